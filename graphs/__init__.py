@@ -1,0 +1,1 @@
+"""Graphs: pipelines read, planned and run."""

@@ -1,0 +1,1 @@
+"""Align: one topology over all frames of all takes."""

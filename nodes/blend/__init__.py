@@ -1,0 +1,1 @@
+"""Blend: poses between poses."""

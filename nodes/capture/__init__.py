@@ -1,0 +1,1 @@
+"""Capture: real footage, its calibration and its mattes."""

@@ -1,0 +1,1 @@
+"""Evaluate: figures against truth, targets and peers."""

@@ -1,0 +1,1 @@
+"""Pure mathematics used by several stations."""

@@ -1,0 +1,1 @@
+"""Motion graphs: where one take can flow into another."""

@@ -1,0 +1,34 @@
+"""A performance with known truth."""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from reperform.nodes.product import Axes
+from reperform.nodes.products.mesh import MeshSequence, TextureAtlas
+
+
+class SkeletonSequence(NamedTuple):
+    """Joint positions over time."""
+
+    joints: Annotated[np.ndarray, Axes("frame", "joint", "3", unit="m")]
+    # -1 for the root; parents come before children
+    parents: Annotated[np.ndarray, Axes("joint", dtype="int32")]
+    names: Annotated[np.ndarray, Axes("joint", dtype="str")]
+    fps: Annotated[np.ndarray, Axes(dtype="float32", unit="Hz")]
+
+
+class Contacts(NamedTuple):
+    """Which foot is planted on the ground."""
+
+    # columns: left, right
+    planted: Annotated[np.ndarray, Axes("frame", "2", dtype="bool")]
+
+
+class Performance(NamedTuple):
+    """What a virtual actor really did: mesh, what is painted on it, joints and contacts."""
+
+    mesh: MeshSequence
+    texture: TextureAtlas
+    skeleton: SkeletonSequence
+    contacts: Contacts

@@ -1,0 +1,1 @@
+"""Similarity: how far apart two frames are."""

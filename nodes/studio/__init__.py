@@ -1,0 +1,1 @@
+"""Studio: performers with known truth, filmed by virtual cameras."""

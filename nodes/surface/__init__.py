@@ -1,0 +1,1 @@
+"""Surface: from mattes to a watertight mesh per frame."""

@@ -1,0 +1,1 @@
+"""Synthesis: new motion from captured motion."""

@@ -1,0 +1,1 @@
+"""Texture: video-realistic pictures of captured and synthesised motion."""

@@ -1,0 +1,1 @@
+"""Storage: results in zarr, an index of keys, and nothing else."""

@@ -1,0 +1,1 @@
+"""Viewer: the command line, reports, exports and the window."""
