@@ -29,9 +29,14 @@ class Param:
 
 @dataclass(frozen=True)
 class File:
-    """Marks a `str` parameter as a file or folder: its content, not its path, is in the cache key."""
+    """Marks a `str` parameter as a file or folder; the node gets its absolute path.
+
+    Its content, not its path, is in the cache key. `in_key=False` leaves it out, for nodes whose input products
+    already carry digests of what they will read there.
+    """
 
     about: str = ""
+    in_key: bool = True
 
 
 @dataclass(frozen=True)
