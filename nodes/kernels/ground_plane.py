@@ -26,8 +26,9 @@ def align(
 ) -> tuple[Placement, float]:
     """The placement T that minimises sum_i w_i |points_i - T moved_i|^2, and that minimum.
 
-    points, moved: (N, 3) corresponding points, m; weights: (N,), not negative (default: all one). With weighted
-    means taken off, yaw = atan2(sum w (x z' - x' z), sum w (x x' + z z')), the offset joins the means; closed form.
+    points, moved: (N, 3) corresponding points, m; weights: (N,), not negative (default: one each). Closed form:
+    with weighted means taken off, yaw = atan2(sum w (x z' - x' z), sum w (x x' + z z')); the offset joins the
+    means.
     The turn is 0 where the points do not tell one (all on a vertical line).
     Raises ValueError where shapes differ or no weight is positive.
 
@@ -35,7 +36,7 @@ def align(
     """
     if points.shape != moved.shape or points.ndim != 2 or points.shape[1] != 3:
         raise ValueError(
-            f"align: two (N, 3) point sets of one length are needed, got {points.shape}, {moved.shape}"
+            f"align: two (N, 3) point sets of one length needed, got {points.shape}, {moved.shape}"
         )
     p, q = points.astype(np.float64), moved.astype(np.float64)
     w = np.ones(len(p)) if weights is None else np.asarray(weights, np.float64)

@@ -8,7 +8,7 @@ from scipy.sparse.linalg import SuperLU, splu
 
 
 def uniform_laplacian(faces: np.ndarray, n: int) -> scipy.sparse.csr_matrix:
-    """Graph Laplacian D - A of the edges of `faces` over n vertices: symmetric, positive semi-definite, (n, n)."""
+    """Graph Laplacian D - A (n, n) of the edges of `faces`: symmetric, positive semi-definite."""
     adjacency = vertex_adjacency(faces, n)
     degree = np.asarray(adjacency.sum(axis=1)).ravel()
     return (scipy.sparse.diags(degree) - adjacency).tocsr()
@@ -49,9 +49,9 @@ def cotangent_laplacian(vertices: np.ndarray, faces: np.ndarray) -> scipy.sparse
 
 
 def gradient_operator(vertices: np.ndarray, faces: np.ndarray) -> scipy.sparse.csr_matrix:
-    """Gradient G of functions that are linear on each face, (3 F, V); rows 3 f .. 3 f + 2 are face f's x, y, z.
+    """Gradient G of functions linear on each face, (3 F, V); rows 3 f .. 3 f + 2 are face f's x, y, z.
 
-    With x (V, 3) another placement of the same mesh, J = (G @ x).reshape(F, 3, 3) is the transposed deformation
+    With x (V, 3) another placement of the mesh, J = (G @ x).reshape(F, 3, 3) is the transposed deformation
     gradient of each face: x_c - x_a = J^T (v_c - v_a) along its edges, J^T n = 0 along its normal.
     G^T diag(area) G is the cotangent Laplacian. Zero for faces without area.
     Source: Botsch, Sumner, Pauly and Gross 2006, VMV.
@@ -75,8 +75,8 @@ def gradient_operator(vertices: np.ndarray, faces: np.ndarray) -> scipy.sparse.c
 def deformation_gradients(vertices: np.ndarray, deformed: np.ndarray, faces: np.ndarray) -> np.ndarray:
     """Per face the 3x3 matrix F with F e = e' for its edges and F n = n' for its unit normals, (F, 3, 3).
 
-    Source: Sumner and Popovic 2004, SIGGRAPH. Departure: unit normals on both sides, so that F is a pure rotation
-    for a rigid motion whatever the scale, and the determinant is the ratio of areas.
+    Source: Sumner and Popovic 2004, SIGGRAPH. Departure: unit normals on both sides, so that F is a pure
+    rotation for a rigid motion whatever the scale, and the determinant is the ratio of areas.
     """
     frame = _edge_frames(vertices.astype(np.float64), faces)
     other = _edge_frames(deformed.astype(np.float64), faces)

@@ -1,7 +1,7 @@
 """Normals, areas, volume, centroids and edges of triangle meshes.
 
-All functions take vertices (..., V, 3) and faces (F, 3), counter-clockwise seen from outside; leading axes of the
-vertices (frames) are carried through.
+All functions take vertices (..., V, 3) and faces (F, 3), counter-clockwise seen from outside; leading axes of
+the vertices (frames) are carried through.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def face_areas(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
 
 
 def vertex_normals(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
-    """Unit normals at vertices, (..., V, 3): area-weighted mean of the faces around; zero at loose vertices."""
+    """Unit normals at vertices, (..., V, 3): area-weighted mean of the faces around; zero if loose."""
     count = vertices.shape[-2]
     cross = face_cross(vertices, faces)
     flat = cross.reshape(-1, len(faces), 3)
@@ -55,7 +55,7 @@ def volume(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
 
 
 def centroid(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
-    """Centre of the surface (..., 3): mean of the faces' centres weighted by area, independent of vertex density."""
+    """Centre of the surface (..., 3): area-weighted mean of the faces' centres; vertex density has no say."""
     corners = vertices[..., faces, :].astype(np.float64)
     areas = face_areas(vertices, faces).astype(np.float64)[..., None]
     return (corners.mean(-2) * areas).sum(-2) / np.maximum(areas.sum(-2), _DEGENERATE)

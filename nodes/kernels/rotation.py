@@ -29,7 +29,7 @@ def exp(vectors: np.ndarray) -> np.ndarray:
 
 
 def log(matrices: np.ndarray) -> np.ndarray:
-    """Rotation vectors of rotation matrices, angle in [0, pi]; accurate near 0 and near pi (by quaternions)."""
+    """Rotation vectors of rotation matrices, angle in [0, pi]; accurate near 0 and near pi (quaternions)."""
     q = quaternion(matrices)
     imaginary = np.linalg.norm(q[..., 1:], axis=-1)
     angle = 2.0 * np.arctan2(imaginary, q[..., 0])
@@ -79,6 +79,6 @@ def polar(matrices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def slerp(a: np.ndarray, b: np.ndarray, weight: float | np.ndarray) -> np.ndarray:
-    """The rotation at `weight` of the shortest way from a (0) to b (1): a exp(weight log(a^T b)), exact at 0."""
+    """The rotation at `weight` of the shortest way from a (0) to b (1): a exp(weight log(a^T b))."""
     relative = log(np.swapaxes(a, -1, -2) @ b)
     return a @ exp(np.asarray(weight)[..., None] * relative)
