@@ -22,7 +22,7 @@ def rasterise(
     Inside: the three integer edge functions are positive, or zero on a top or left edge, so that a pixel on
     an edge shared by two triangles belongs to exactly one. With screen weights s_i (sum 1):
     z = 1 / sum_j (s_j / z_j) and b_i = z s_i / z_i. Both orientations are drawn; at equal depth the lower id
-    wins. Triangles with a vertex at nan, at depth <= 0, or farther than 32768 px from the first pixel are left
+    wins. Triangles with a vertex at nan, at depth <= 0, or farther than 32768 px from pixel (0, 0) are left
     out, not clipped.
 
     Source: Pineda 1988, SIGGRAPH, "A parallel algorithm for polygon rasterization"; Blinn 1992 (hyperbolic
