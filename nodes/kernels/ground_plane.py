@@ -26,7 +26,7 @@ def align(
 ) -> tuple[Placement, float]:
     """The placement T that minimises sum_i w_i |points_i - T moved_i|^2, and that minimum.
 
-    points, moved: (N, 3) corresponding points, m; weights: (N,), not negative (default: one each). Closed form:
+    points, moved: (N, 3) corresponding points, m; weights: (N,), not negative (default: all 1). Closed form:
     with weighted means taken off, yaw = atan2(sum w (x z' - x' z), sum w (x x' + z z')); the offset joins the
     means.
     The turn is 0 where the points do not tell one (all on a vertical line).
