@@ -1,0 +1,59 @@
+"""Soft light on a surface: sky, key light with its own shadow, and a rim."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+
+from reperform.nodes.kernels.camera import look_at
+from reperform.nodes.kernels.rasterise import rasterise
+
+
+def soft_shade(
+    points: np.ndarray,
+    normals: np.ndarray,
+    towards: np.ndarray,
+    albedo: np.ndarray,
+    vertices: np.ndarray,
+    faces: np.ndarray,
+    light: np.ndarray,
+) -> np.ndarray:
+    """Lit colours (P, 3), 0..255, of points (P, 3) with unit normals, seen along unit `towards`.
+
+    colour = albedo (0.46 + 0.16 n_y + 0.48 lit max(0, n . l) + 0.12 (1 - n . v)^3); lit is the share of nine
+    samples around the point in the light's depth map that nothing stands in front of. vertices (V, 3) m,
+    faces: what casts the shadow; light (3,): direction towards the light.
+    """
+    aim = light / np.linalg.norm(light)
+    key = np.maximum(normals @ aim, 0) * _lit(points, normals, vertices, faces, aim)
+    rim = np.power(1 - np.clip(np.einsum("pk,pk->p", normals, towards), 0, 1), 3)
+    strength = 0.46 + 0.16 * normals[:, 1] + 0.48 * key + 0.12 * rim
+    return np.clip(albedo * strength[:, None], 0, 255)
+
+
+def _lit(
+    points: np.ndarray, normals: np.ndarray, vertices: np.ndarray, faces: np.ndarray, aim: np.ndarray
+) -> np.ndarray:
+    cell, bias = 0.01, 0.02
+    rotation, _ = look_at(aim, np.zeros(3))
+    seen = vertices @ rotation.T
+    low = seen.min(axis=0) - (2 * cell, 2 * cell, 1.0)
+    size = np.ceil((seen.max(axis=0)[:2] - low[:2]) / cell).astype(int) + 3
+    _, _, depth = rasterise(
+        (seen[:, :2] - low[:2]) / cell, seen[:, 2] - low[2], faces, int(size[1]), int(size[0])
+    )
+    lifted = (points + bias * normals) @ rotation.T - low
+    column, row = lifted[:, 0] / cell, lifted[:, 1] / cell
+    total = np.zeros(len(points))
+    for dx in (-1.2, 0.0, 1.2):
+        for dy in (-1.2, 0.0, 1.2):
+            near = cv2.remap(
+                depth,
+                (column + dx).astype(np.float32).reshape(-1, 1),
+                (row + dy).astype(np.float32).reshape(-1, 1),
+                cv2.INTER_NEAREST,
+                borderMode=cv2.BORDER_CONSTANT,
+                borderValue=float("inf"),
+            )[:, 0]
+            total += lifted[:, 2] <= near + bias
+    return total / 9
