@@ -1,0 +1,444 @@
+"""The engine: runs what is stale, and nothing else.
+
+One loop in one thread: units whose inputs are complete are resolved against the index; what is missing goes to the
+executor in batches; every outcome is committed before the next is looked at.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections import deque
+from collections.abc import Sequence
+from typing import Any, Protocol
+
+from reperform.graphs.complete import complete
+from reperform.graphs.errors import RunError
+from reperform.graphs.pipeline import Pipeline
+from reperform.graphs.report import RunReport, step_reports
+from reperform.graphs.resolve import Resolver
+from reperform.graphs.unit import Name, Unit, Work
+from reperform.storage.errors import StoreError
+from reperform.storage.index import Manifest, Records, Result, Segment
+from reperform.storage.store import Store
+
+BATCH_SECONDS = 0.5
+BATCH_ITEMS = 512
+BATCH_BYTES = 64 << 20
+
+
+class Progress(Protocol):
+    """Who is told how far the work is."""
+
+    def start(self, step: str, total: int) -> None: ...
+    def advance(self, step: str, computed: int = 0, cached: int = 0, failed: int = 0) -> None: ...
+    def finish(self, step: str) -> None: ...
+    def note(self, text: str) -> None: ...
+
+
+class Silent:
+    """Nobody is told."""
+
+    def start(self, step: str, total: int) -> None:
+        """Say nothing."""
+
+    def advance(self, step: str, computed: int = 0, cached: int = 0, failed: int = 0) -> None:
+        """Say nothing."""
+
+    def finish(self, step: str) -> None:
+        """Say nothing."""
+
+    def note(self, text: str) -> None:
+        """Say nothing."""
+
+
+class Engine:
+    """One run of some steps of a pipeline on a store."""
+
+    def __init__(
+        self,
+        pipeline: Pipeline,
+        store: Store,
+        steps: Sequence[str] = (),
+        *,
+        open_executor: Any = None,
+        progress: Progress | None = None,
+        keep_going: bool = False,
+        resume: str = "reperform run",
+    ) -> None:
+        self.pipeline, self.store = pipeline, store
+        self.chosen = pipeline.chosen(steps)
+        self.progress: Progress = progress or Silent()
+        self._open_executor, self._keep_going, self._resume = open_executor, keep_going, resume
+        self._executor: Any = None
+        self._stopping = False
+        run = os.urandom(16)
+        self.resolver = Resolver(pipeline, store.url, store.index, self.manifest, run)
+        self.units: dict[Name, Unit] = {}
+        self._ready: deque[Unit] = deque()
+        self._open: deque[Unit] = deque()
+        self._in_flight: dict[int, tuple[Unit, list[int]]] = {}
+        self._load: list[float] = [0.0, 0.0]
+        self._tag = 0
+        self._pace: dict[str, tuple[float | None, float | None]] = {}
+        self._started: set[str] = set()
+        self.notes: list[str] = []
+        self._make_units()
+
+    # -- what stands on what ------------------------------------------------------------------------------------
+
+    def _make_units(self) -> None:
+        for name in self.chosen:
+            step = self.pipeline.steps[name]
+            labels = ("*",) if step.node.output_many == "dataset" else step.units
+            for label in labels:
+                unit = self.units[name, label] = Unit(step, label)
+                unit.missing = {self._unit_name(*need) for need in self.resolver.needs(step, label)}
+                for need in unit.missing:
+                    self.units[need].consumers.append(unit.name)
+                if not unit.missing:
+                    self._ready.append(unit)
+
+    def _unit_name(self, step: str, label: str) -> Name:
+        return (step, "*") if self.pipeline.steps[step].node.output_many == "dataset" else (step, label)
+
+    def manifest(self, step: str, label: str) -> Manifest:
+        """The manifest of a finished output."""
+        return self.units[self._unit_name(step, label)].manifests[label]
+
+    # -- the loop -----------------------------------------------------------------------------------------------
+
+    def run(self) -> RunReport:
+        """Run to the end. Raises RunError with all failures once nothing more can be done."""
+        start = time.perf_counter()
+        try:
+            while True:
+                while self._ready:
+                    self._resolve(self._ready.popleft())
+                self._dispatch()
+                if not self._in_flight and not self._waits_elsewhere():
+                    if self._ready:
+                        continue
+                    break
+                self._take_outcome()
+        finally:
+            if self._executor is not None:
+                self._executor.close()
+        report = RunReport(self.pipeline.name, time.perf_counter() - start, step_reports(self.chosen, self.units))
+        self._remember()
+        failures = [error for unit in self.units.values() for error in unit.errors]
+        if failures:
+            raise RunError("\n".join(failures[:20]), report)
+        return report
+
+    def _resolve(self, unit: Unit) -> None:
+        """Answer a unit from the index, or open it for work."""
+        self._announce(unit)
+        try:
+            self.resolver.key(unit)
+            if self._answer(unit):
+                return
+            unit.work = work = self.resolver.expand(unit)
+        except ValueError as error:
+            self._fail(unit, f"{unit.item_text} ({unit.step.node.name}): {error}")
+            return
+        found = self.store.index.results(work.keys)
+        notes = self.store.mend(sorted({result.segment for result in found.values()}))
+        if notes:
+            self._note(notes)
+            found = self.store.index.results(work.keys)
+        work.results = found
+        unit.cached = 0 if unit.mended else unit.cached
+        if work.outputs is not None:
+            work.queue.extend([] if len(found) == len(work.keys) else [0])
+            unit.cached += not work.queue
+        else:
+            # items with equal inputs have one key, and are computed once
+            first: set[bytes] = set()
+            for position, key in enumerate(work.keys):
+                if key not in found and key not in first:
+                    first.add(key)
+                    work.queue.append(position)
+            unit.cached += len(work.keys) - len(work.queue)
+        self.progress.advance(unit.step.name, cached=len(work.items) - len(work.queue))
+        unit.status = "open"
+        self._open.append(unit)
+        self._settle(unit)
+
+    def _answer(self, unit: Unit) -> bool:
+        """Whether the index has the whole unit; then it is done."""
+        step = unit.step
+        if step.node.volatile:
+            return False
+        if step.node.output_many == "dataset":
+            keys = {take: _output_key(unit.key, take) for take in step.takes}
+        else:
+            keys = {unit.label: unit.key}
+        manifests = {label: self.store.index.manifest(key) for label, key in keys.items()}
+        found = {label: manifest for label, manifest in manifests.items() if manifest is not None}
+        if len(found) < len(keys):
+            return False
+        notes = [note for manifest in found.values() for note in self.store.check(manifest)]
+        if notes:
+            self._note(notes)
+            return False
+        items = 1 if step.node.output_many == "dataset" else int(next(iter(found.values())).summary["items"])
+        if not unit.mended:
+            unit.cached = items
+            self.progress.advance(step.name, cached=items)
+        self._finish(unit, found)
+        return True
+
+    def _finish(self, unit: Unit, manifests: dict[str, Manifest]) -> None:
+        unit.manifests, unit.status, unit.work = manifests, "done", None
+        for name in unit.consumers:
+            consumer = self.units[name]
+            consumer.missing.discard(unit.name)
+            if not consumer.missing and consumer.status == "waiting":
+                self._ready.append(consumer)
+        self._close_step(unit.step.name)
+
+    def _fail(self, unit: Unit, *errors: str) -> None:
+        unit.errors += errors
+        unit.status = "failed"
+        unit.failed = max(unit.failed, 1)
+        if not self._keep_going:
+            self._stopping = True
+        self._skip_consumers(unit)
+        self._close_step(unit.step.name)
+
+    def _skip_consumers(self, unit: Unit) -> None:
+        for name in unit.consumers:
+            consumer = self.units[name]
+            if consumer.status in ("waiting", "done"):
+                consumer.status = "skipped"
+                self._skip_consumers(consumer)
+
+    # -- sending work out ---------------------------------------------------------------------------------------
+
+    def _dispatch(self) -> None:
+        """Send batches while there is room for them."""
+        for _ in range(len(self._open)):
+            unit = self._open[0]
+            work = unit.work
+            while work and work.queue and not self._stopping and self._has_room(unit):
+                self._send(unit, work)
+            if unit.status == "open" and work and not work.is_over and not self._stopping:
+                if self._full():
+                    return
+                self._open.rotate(-1)
+            else:
+                self._open.popleft()
+
+    def _full(self) -> bool:
+        return self._executor is not None and self._load[0] >= self._executor.slots
+
+    def _has_room(self, unit: Unit) -> bool:
+        if self._executor is None:
+            self.store.start_heartbeat()
+            self._executor = self._open_executor()
+        node = unit.step.node
+        if not self._in_flight:
+            return True
+        return self._load[0] + node.threads <= self._executor.slots and self._load[1] + node.memory <= _memory()
+
+    def _send(self, unit: Unit, work: Work) -> None:
+        from reperform.graphs.batch import Batch
+
+        size = self._batch_size(unit.step.node.name, len(work.queue))
+        positions = [work.queue.popleft() for _ in range(min(size, len(work.queue)))]
+        keys = work.keys if work.outputs is not None else [work.keys[k] for k in positions]
+        mine, done = self.store.claim(keys)
+        work.results |= done
+        if work.outputs is not None:
+            positions = positions if mine else []
+            if len(done) < len(keys) and not mine:
+                work.elsewhere.append(0)
+        else:
+            work.elsewhere.extend(k for k in positions if work.keys[k] not in mine and work.keys[k] not in done)
+            unit.cached += sum(work.keys[k] in done for k in positions)
+            positions = [k for k in positions if work.keys[k] in mine]
+        if not positions:
+            self._settle(unit)
+            return
+        node, output = unit.step.node, self.pipeline.catalogue.products[unit.step.node.output]
+        batch = Batch(
+            self.store.url,
+            node.name,
+            (node.module, node.function),
+            node.over,
+            (output.module, output.name.rsplit(".", 1)[1]),
+            output.fields,
+            work.outputs,
+            work.parameters,
+            work.feeds,
+            tuple(work.items[k] for k in positions),
+            node.threads,
+        )
+        self._tag += 1
+        self._in_flight[self._tag] = (unit, positions)
+        self._load[0] += node.threads
+        self._load[1] += node.memory
+        work.running += 1
+        self._executor.submit(self._tag, batch)
+
+    def _batch_size(self, node: str, waiting: int) -> int:
+        """How many items make about half a second of work; one each until the pace is known."""
+        if node not in self._pace:
+            self._pace[node] = (self.store.index.seconds_per_item(node), self.store.index.bytes_per_item(node))
+        seconds, size = self._pace[node]
+        if seconds is None or size is None:
+            return max(1, min(8, waiting // (4 * self._executor.slots)))
+        fair = -(-waiting // self._executor.slots)
+        return max(1, int(min(BATCH_SECONDS / max(seconds, 1e-6), BATCH_BYTES / max(size, 1), BATCH_ITEMS, fair)))
+
+    def _waits_elsewhere(self) -> bool:
+        return not self._stopping and any(unit.work and unit.work.elsewhere for unit in self._open)
+
+    # -- taking outcomes in -------------------------------------------------------------------------------------
+
+    def _take_outcome(self) -> None:
+        waiting = self._waits_elsewhere()
+        if not self._in_flight:
+            time.sleep(0.1)
+        else:
+            got = self._executor.wait(0.2 if waiting else None)
+            if got is not None:
+                self._take(*got)
+        if waiting:
+            for unit in list(self._open):
+                if unit.work and unit.work.elsewhere:
+                    # ask again: the other run has finished them, still has them, or is gone
+                    unit.work.queue.extend(unit.work.elsewhere)
+                    unit.work.elsewhere.clear()
+
+    def _take(self, tag: int, outcome: Any) -> None:
+        unit, positions = self._in_flight.pop(tag)
+        node, work = unit.step.node, unit.work
+        self._load[0] -= node.threads
+        self._load[1] -= node.memory
+        if work is None:
+            return
+        work.running -= 1
+        if outcome.store_error:
+            self._stopping = True
+            raise StoreError(outcome.store_error)
+        if outcome.damaged:
+            self._mend(unit, positions, *outcome.damaged)
+            return
+        self._commit(unit, work, positions, outcome)
+        self._settle(unit)
+
+    def _commit(self, unit: Unit, work: Work, positions: list[int], outcome: Any) -> None:
+        records = Records()
+        keys = work.keys if work.outputs is not None else [work.keys[k] for k in positions]
+        seconds = sum(item.seconds for item in outcome.items)
+        good = [item for item in outcome.items if item.error is None]
+        for k, (name, size, stamp) in enumerate(outcome.segments):
+            rows = sum(item.segment == k for item in good)
+            share = seconds if len(outcome.segments) == 1 else seconds / len(outcome.segments)
+            records.segments.append(Segment(name, unit.step.node.name, rows, size, share, stamp))
+            self._pace[unit.step.node.name] = (share / max(rows, 1), size / max(rows, 1))
+        for key, item in zip(keys, outcome.items, strict=True):
+            if item.error is None:
+                records.results[key] = Result(outcome.segments[item.segment][0], item.row, item.tables)
+        self.store.index.commit(records)
+        work.results |= records.results
+        unit.seconds += seconds
+        errors = [(k, item) for k, item in zip(positions, outcome.items, strict=False) if item.error is not None]
+        for position, item in errors:
+            work.failed[position] = item.error
+            unit.errors.append(self._explain(unit, work, position, item))
+        computed = 1 if work.outputs is not None else len(positions)
+        unit.computed += computed - len(errors)
+        unit.failed += len(errors)
+        self.progress.advance(unit.step.name, computed=computed - len(errors), failed=len(errors))
+        if errors and not self._keep_going:
+            self._stopping = True
+
+    def _explain(self, unit: Unit, work: Work, position: int, item: Any) -> str:
+        at = work.items[position]
+        where = "" if at.frame is None else f", frame {at.frame}" + ("" if at.camera is None else f", camera {at.camera}")
+        head = f"step {unit.item_text!r}{where} (node {unit.step.node.name}) failed: {item.error}"
+        trace = f"\n{item.trace}" if os.environ.get("REPERFORM_TRACEBACK") and item.trace else ""
+        return f"{head}\n  finished items are kept; rerun only what is missing with: {self._resume} {unit.step.name}{trace}"
+
+    def _settle(self, unit: Unit) -> None:
+        """Close a unit that has nothing left to do."""
+        work = unit.work
+        if work is None or unit.status != "open" or not work.is_over:
+            return
+        if work.failed:
+            unit.status = "failed"
+            self._skip_consumers(unit)
+            self._close_step(unit.step.name)
+            return
+        try:
+            manifests = complete(unit, work, self.pipeline.catalogue.products[unit.step.node.output].fields, self.store)
+        except ValueError as error:
+            self._fail(unit, f"step {unit.item_text!r} (node {unit.step.node.name}): {error}")
+            return
+        self._finish(unit, manifests)
+
+    def _mend(self, unit: Unit, positions: list[int], segment: str, rows: Any, reason: str) -> None:
+        """An input turned out damaged: forget it, make it again, then come back to this unit."""
+        if segment.startswith("manifests/"):
+            broken = [u for u in self.units.values() if any(segment.endswith(m.name) for m in u.manifests.values())]
+            self.store.index.drop_manifests([m.key for u in broken for m in u.manifests.values()])
+            self._note([f"damaged manifest {segment}: {reason}; it is made again"])
+        else:
+            broken = [
+                u
+                for u in self.units.values()
+                if u.manifests and any(segment in self.store.index.segments_of(m.key) for m in u.manifests.values())
+            ]
+            self._note([f"{self.store.forget(segment, rows)} ({reason})"])
+        unit.mended += 1
+        if unit.mended > 3 or not broken:
+            self._fail(unit, f"step {unit.item_text!r}: an input is damaged again and again ({reason}): check the disk")
+            return
+        unit.status, unit.work = "waiting", None
+        for source in broken:
+            unit.missing.add(source.name)
+            if source.status == "done":
+                source.status, source.mended = "waiting", source.mended + 1
+                self._ready.append(source)
+
+    def _announce(self, unit: Unit) -> None:
+        name = unit.step.name
+        if name not in self._started:
+            self._started.add(name)
+        if unit.status == "waiting" and not unit.mended:
+            self.progress.start(name, 0)
+
+    def _close_step(self, step: str) -> None:
+        if all(u.status in ("done", "failed", "skipped") for u in self._units_of(step)):
+            self.progress.finish(step)
+
+    def _units_of(self, step: str) -> list[Unit]:
+        labels = self.pipeline.steps[step].units if self.pipeline.steps[step].node.output_many != "dataset" else ("*",)
+        return [self.units[step, label] for label in labels]
+
+    def _note(self, notes: Sequence[str]) -> None:
+        for note in notes:
+            self.notes.append(note)
+            self.progress.note(note)
+
+    def _remember(self) -> None:
+        """Keep the parts of the keys for `why`, where they changed."""
+        from reperform.graphs.history import changed_parts
+
+        rows = changed_parts(self.pipeline.name, self.units.values(), self.store.index)
+        if rows:
+            self.store.index.remember(self.pipeline.name, rows)
+
+
+def _output_key(key: bytes, take: str) -> bytes:
+    from reperform.storage.digest import digest_bytes
+
+    return digest_bytes(key, take.encode())
+
+
+def _memory() -> float:
+    """GB of memory that batches in flight may declare together."""
+    return 0.8 * os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") / 1e9

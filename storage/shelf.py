@@ -1,0 +1,184 @@
+"""The shelf: where segments and manifests lie. Workers read and write here and never see the index.
+
+A segment is written beside and renamed on a file system; on an object store it is simply not named by the index until
+all of it is there.
+"""
+
+from __future__ import annotations
+
+import errno
+import functools
+import os
+import shutil
+import uuid
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from reperform.storage.errors import DamagedResult, StoreError
+
+SEGMENTS, MANIFESTS = "segments", "manifests"
+
+
+class Shelf:
+    """Segments and manifests under one URL: a local folder, or anything fsspec opens."""
+
+    def __init__(self, url: str) -> None:
+        self.url = url
+        self.folder: Path | None = None if is_remote(url) else Path(url)
+        if self.folder is not None:
+            (self.folder / SEGMENTS).mkdir(parents=True, exist_ok=True)
+            (self.folder / MANIFESTS).mkdir(exist_ok=True)
+
+    @functools.cached_property
+    def filesystem(self) -> tuple[Any, str]:
+        """The fsspec file system and the path of the store in it."""
+        import fsspec
+
+        return fsspec.core.url_to_fs(self.url)
+
+    @functools.cached_property
+    def zarr_store(self) -> Any:
+        """The zarr store that holds all segments."""
+        from zarr.storage import FsspecStore, LocalStore
+
+        if self.folder is not None:
+            return LocalStore(self.folder / SEGMENTS)
+        return FsspecStore.from_url(f"{self.url.rstrip('/')}/{SEGMENTS}")
+
+    def write_segment(
+        self, node: str, fields: Mapping[str, np.ndarray | Sequence[np.ndarray]], by_item: bool = False
+    ) -> tuple[str, int, str]:
+        """Write a segment whole or not at all. Returns its name, bytes before compression, and its stamp."""
+        from reperform.storage.segment import write_segment
+
+        name = f"{node}/{uuid.uuid4().hex}"
+        if self.folder is None:
+            size = write_segment(self.zarr_store, name, fields, by_item)
+            return name, size, ""
+        beside = f".writing-{uuid.uuid4().hex}"
+        place = self.folder / SEGMENTS
+        try:
+            size = write_segment(self.zarr_store, beside, fields, by_item)
+            (place / node).mkdir(parents=True, exist_ok=True)
+            os.rename(place / beside, place / name)
+        except OSError as error:
+            shutil.rmtree(place / beside, ignore_errors=True)
+            raise _explained(error, self.url) from error
+        return name, size, self.stamp(name)
+
+    def reader(self, name: str) -> Any:
+        """The reader of a segment (kept open: segments never change)."""
+        return _open_reader(self.url, name)
+
+    def stamp(self, name: str) -> str:
+        """Number, bytes and newest change time of a segment's files; empty on object stores, which check themselves."""
+        if self.folder is None:
+            return ""
+        count = size = newest = 0
+        stack = [os.path.join(self.folder, SEGMENTS, name)]
+        while stack:
+            try:
+                with os.scandir(stack.pop()) as entries:
+                    for entry in entries:
+                        if entry.is_dir(follow_symlinks=False):
+                            stack.append(entry.path)
+                            continue
+                        state = entry.stat(follow_symlinks=False)
+                        count, size, newest = count + 1, size + state.st_size, max(newest, state.st_mtime_ns)
+            except FileNotFoundError:
+                return "gone"
+        return f"{count}/{size}/{newest}"
+
+    def write_manifest(self, name: str, data: bytes) -> None:
+        """Store the bytes of a manifest."""
+        if self.folder is None:
+            fs, root = self.filesystem
+            fs.pipe_file(f"{root}/{MANIFESTS}/{name}", data)
+            return
+        path = self.folder / MANIFESTS / name
+        beside = path.with_name(f".writing-{uuid.uuid4().hex}")
+        try:
+            beside.write_bytes(data)
+            os.replace(beside, path)
+        except OSError as error:
+            beside.unlink(missing_ok=True)
+            raise _explained(error, self.url) from error
+
+    def read_manifest(self, name: str) -> bytes:
+        """The bytes of a manifest. Raises DamagedResult where it is gone."""
+        try:
+            if self.folder is None:
+                fs, root = self.filesystem
+                return bytes(fs.cat_file(f"{root}/{MANIFESTS}/{name}"))
+            return (self.folder / MANIFESTS / name).read_bytes()
+        except FileNotFoundError as error:
+            raise DamagedResult(f"{MANIFESTS}/{name}", None, "the manifest is gone") from error
+
+    def has_manifest(self, name: str) -> bool:
+        """Whether a manifest lies here (object stores are trusted; a read notices)."""
+        return self.folder is None or (self.folder / MANIFESTS / name).exists()
+
+    def remove(self, kind: str, name: str) -> None:
+        """Delete a segment or a manifest."""
+        if self.folder is None:
+            fs, root = self.filesystem
+            if fs.exists(f"{root}/{kind}/{name}"):
+                fs.rm(f"{root}/{kind}/{name}", recursive=True)
+            return
+        path = self.folder / kind / name
+        if path.is_dir():
+            shutil.rmtree(path)
+        else:
+            path.unlink(missing_ok=True)
+
+    def names(self, kind: str) -> list[str]:
+        """Names of all segments (or manifests) that lie here, unfinished ones too."""
+        if self.folder is None:
+            fs, root = self.filesystem
+            base = f"{root}/{kind}/"
+            found = {path.split(base, 1)[1] for path in fs.find(base)} if fs.exists(base) else set()
+            return sorted({"/".join(f.split("/")[:2]) for f in found} if kind == SEGMENTS else found)
+        place = self.folder / kind
+        if kind == MANIFESTS:
+            return sorted(path.name for path in place.iterdir())
+        nodes = [path for path in place.iterdir() if path.is_dir()]
+        unfinished = [path.name for path in nodes if path.name.startswith(".")]
+        return sorted(
+            unfinished + [f"{n.name}/{p.name}" for n in nodes if not n.name.startswith(".") for p in n.iterdir()]
+        )
+
+
+def is_remote(url: str) -> bool:
+    """Whether a store's URL names something else than a local folder."""
+    return "://" in url
+
+
+@functools.lru_cache(maxsize=256)
+def _open_reader(url: str, name: str) -> Any:
+    from reperform.storage.segment import SegmentReader
+
+    return SegmentReader(open_shelf(url).zarr_store, name)
+
+
+@functools.lru_cache(maxsize=8)
+def open_shelf(url: str) -> Shelf:
+    """The shelf at a URL, one per process."""
+    return Shelf(url)
+
+
+def forget_open_files() -> None:
+    """Drop readers kept open: needed only after stored files were changed behind our back."""
+    _open_reader.cache_clear()
+
+
+def _explained(error: OSError, url: str) -> StoreError:
+    cure = {
+        errno.ENOSPC: "the disk is full: free space or run `reperform store gc`, then run again; finished items are kept",
+        errno.EDQUOT: "the disk quota is used up: free space, then run again; finished items are kept",
+        errno.EACCES: "no permission to write there: choose another place with --store",
+        errno.EROFS: "the file system is read-only: choose another place with --store",
+    }.get(error.errno or 0, "finished items are kept; mend the cause, then run again")
+    return StoreError(error.errno, f"store {url}: cannot write: {error.strerror or error}: {cure}")
