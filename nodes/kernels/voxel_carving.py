@@ -1,0 +1,212 @@
+"""Fractional visual hulls: how far every voxel's footprint is covered in every matte, combined over cameras."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from reperform.nodes.kernels.camera import radial_limit
+
+# Certainty of a single matte: neither 0 nor 1, so that odds stay finite.
+_DOUBT = 1e-3
+
+
+def integral_images(alpha: np.ndarray) -> np.ndarray:
+    """Sums of (camera, y, x) uint8 over all pixels above and left, (camera, y + 1, x + 1) int64."""
+    cameras, height, width = alpha.shape
+    sums = np.zeros((cameras, height + 1, width + 1), np.int64)
+    for camera in range(cameras):
+        np.cumsum(alpha[camera], axis=0, dtype=np.int64, out=sums[camera, 1:, 1:])
+        np.cumsum(sums[camera, 1:, 1:], axis=1, out=sums[camera, 1:, 1:])
+    return sums
+
+
+def camera_rows(
+    matrix: np.ndarray, rotation: np.ndarray, translation: np.ndarray, distortion: np.ndarray
+) -> np.ndarray:
+    """Everything the kernels need of each camera in one float64 row (camera, 23)."""
+    limits = np.array([radial_limit(lens) ** 2 for lens in distortion])
+    return np.concatenate(
+        [
+            rotation.reshape(-1, 9),
+            translation.reshape(-1, 3),
+            matrix[:, 0, 0:1],
+            matrix[:, 1, 1:2],
+            matrix[:, 0, 1:2],
+            matrix[:, 0, 2:3],
+            matrix[:, 1, 2:3],
+            distortion.reshape(-1, 5),
+            limits[:, None],
+        ],
+        axis=1,
+    ).astype(np.float64)
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _project(row: np.ndarray, x: float, y: float, z: float) -> tuple[float, float, float]:
+    """Pixel of a point and its depth; depth <= 0 where the camera cannot see it."""
+    cz = row[6] * x + row[7] * y + row[8] * z + row[11]
+    if cz <= 1e-6:
+        return 0.0, 0.0, -1.0
+    u = (row[0] * x + row[1] * y + row[2] * z + row[9]) / cz
+    v = (row[3] * x + row[4] * y + row[5] * z + row[10]) / cz
+    r2 = u * u + v * v
+    if r2 >= row[22]:
+        return 0.0, 0.0, -1.0
+    radial = 1 + r2 * (row[17] + r2 * (row[18] + r2 * row[21]))
+    lens_u = u * radial + 2 * row[19] * u * v + row[20] * (r2 + 2 * u * u)
+    lens_v = v * radial + row[19] * (r2 + 2 * v * v) + 2 * row[20] * u * v
+    return row[12] * lens_u + row[14] * lens_v + row[15], row[13] * lens_v + row[16], cz
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _integral_at(sums: np.ndarray, x: float, y: float) -> float:
+    """Integral of the piecewise constant picture up to the corner (x, y), in pixels from its border."""
+    i, j = int(x), int(y)
+    i = min(i, sums.shape[1] - 2)
+    j = min(j, sums.shape[0] - 2)
+    fx, fy = x - i, y - j
+    top = sums[j, i] + fx * (sums[j, i + 1] - sums[j, i])
+    bottom = sums[j + 1, i] + fx * (sums[j + 1, i + 1] - sums[j + 1, i])
+    return top + fy * (bottom - top)
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _covered(sums: np.ndarray, x: float, y: float, half: float) -> float:
+    """Mean coverage 0 .. 1 of the square of half width `half` px about pixel (x, y); -1 outside the picture."""
+    height, width = sums.shape[0] - 1, sums.shape[1] - 1
+    x += 0.5
+    y += 0.5
+    if x < 0 or y < 0 or x > width or y > height:
+        return -1.0
+    left, right = max(x - half, 0.0), min(x + half, float(width))
+    top, bottom = max(y - half, 0.0), min(y + half, float(height))
+    total = (
+        _integral_at(sums, right, bottom)
+        - _integral_at(sums, left, bottom)
+        - _integral_at(sums, right, top)
+        + _integral_at(sums, left, top)
+    )
+    return total / (255.0 * (right - left) * (bottom - top))
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _against(
+    sums: np.ndarray, rows: np.ndarray, x: float, y: float, z: float, half: float, out: np.ndarray
+) -> int:
+    """Odds against occupancy, (1 - p) / p, of each camera that sees the point, unsorted; how many see it."""
+    seen = 0
+    for camera in range(len(rows)):
+        px, py, depth = _project(rows[camera], x, y, z)
+        if depth <= 0:
+            continue
+        focal = 0.5 * (rows[camera, 12] + rows[camera, 13])
+        p = _covered(sums[camera], px, py, max(half * focal / depth, 0.5))
+        if p < 0:
+            continue
+        p = min(max(p, _DOUBT), 1 - _DOUBT)
+        out[seen] = (1 - p) / p
+        seen += 1
+    return seen
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _combine(against: np.ndarray, seen: int, misses: int) -> float:
+    """Probability 1 / (1 + sum of the odds against, the `misses` largest left out)."""
+    total = 0.0
+    for k in range(seen):
+        total += against[k]
+    for _ in range(misses):
+        worst = 0
+        for k in range(1, seen):
+            if against[k] > against[worst]:
+                worst = k
+        total -= against[worst]
+        against[worst] = 0.0
+    return 1 / (1 + max(total, 0.0))
+
+
+@njit(cache=True, nogil=True)
+def carve(
+    sums: np.ndarray,
+    rows: np.ndarray,
+    origin: np.ndarray,
+    voxel: float,
+    blocks: np.ndarray,
+    block: int,
+    misses: int,
+    views: int,
+    out: np.ndarray,
+) -> None:
+    """Probability of occupancy of the voxels of the marked blocks, into `out` (x, y, z) float32.
+
+    sums: integral images of the mattes; rows: `camera_rows`; voxel (i, j, k) is centred at origin + voxel (i, j, k);
+    blocks (x, y, z) bool: blocks of `block` voxels to evaluate. A camera that does not see a voxel says nothing of
+    it; voxels seen by fewer than `views` cameras stay as they are.
+    """
+    against = np.empty(len(rows))
+    half = 0.5 * voxel
+    nx, ny, nz = out.shape
+    for bi in range(blocks.shape[0]):
+        for bj in range(blocks.shape[1]):
+            for bk in range(blocks.shape[2]):
+                if not blocks[bi, bj, bk]:
+                    continue
+                for i in range(bi * block, min(bi * block + block, nx)):
+                    x = origin[0] + voxel * i
+                    for j in range(bj * block, min(bj * block + block, ny)):
+                        y = origin[1] + voxel * j
+                        for k in range(bk * block, min(bk * block + block, nz)):
+                            seen = _against(sums, rows, x, y, origin[2] + voxel * k, half, against)
+                            if seen >= views:
+                                out[i, j, k] = _combine(against, seen, min(misses, seen - 1))
+
+
+@njit(cache=True, nogil=True)
+def may_be_occupied(
+    sums: np.ndarray,
+    rows: np.ndarray,
+    origin: np.ndarray,
+    size: float,
+    shape: tuple[int, int, int],
+    misses: int,
+    views: int,
+) -> np.ndarray:
+    """Which cells of a coarse grid may hold something: bool (x, y, z), True where in doubt.
+
+    Cell (i, j, k) is the cube of edge `size` centred at origin + size (i, j, k). It is empty when more than
+    `misses` cameras that see all of it cover none of the square around its bounding sphere.
+    """
+    out = np.zeros(shape, np.bool_)
+    radius = 0.8661 * size
+    for i in range(shape[0]):
+        for j in range(shape[1]):
+            for k in range(shape[2]):
+                x, y, z = origin[0] + size * i, origin[1] + size * j, origin[2] + size * k
+                seen, empty = 0, 0
+                for camera in range(len(rows)):
+                    px, py, depth = _project(rows[camera], x, y, z)
+                    if depth <= 2 * radius:
+                        # too near or behind: says nothing, and may see part of the cell
+                        seen += 1
+                        continue
+                    focal = max(rows[camera, 12], rows[camera, 13])
+                    # 1.25: how much more than f / z a lens may stretch, and the nearer side of the sphere
+                    half = 1.25 * radius * focal / (depth - radius) + 1.0
+                    height, width = sums.shape[1] - 1, sums.shape[2] - 1
+                    if (
+                        px + half < -0.5
+                        or py + half < -0.5
+                        or px - half > width - 0.5
+                        or py - half > height - 0.5
+                    ):
+                        continue
+                    seen += 1
+                    whole = px - half >= -0.5 and py - half >= -0.5
+                    whole = whole and px + half <= width - 0.5 and py + half <= height - 0.5
+                    if whole and _covered(sums[camera], px, py, half) * 4 * half * half < 0.25:
+                        empty += 1
+                        if empty > misses:
+                            break
+                out[i, j, k] = empty <= misses and seen >= views
+    return out
