@@ -59,7 +59,7 @@ def mesh_sequence(
         raise ValueError(
             f"{who}: vertices must be finite, {int((~np.isfinite(taken)).sum())} coordinates are not"
         )
-    return MeshSequence(taken, triangles.astype(np.int32), np.float32(rate))
+    return MeshSequence(taken, triangles.astype(np.int32), np.asarray(rate, np.float32))
 
 
 def _check_shapes(who: str, points: np.ndarray, triangles: np.ndarray) -> None:
@@ -69,5 +69,6 @@ def _check_shapes(who: str, points: np.ndarray, triangles: np.ndarray) -> None:
         raise ValueError(f"{who}: faces must be (face, 3) integers, got {triangles.shape} {triangles.dtype}")
     if triangles.size and (triangles.min() < 0 or triangles.max() >= points.shape[1]):
         raise ValueError(
-            f"{who}: faces must name vertices 0 .. {points.shape[1] - 1}, got {triangles.min()} .. {triangles.max()}"
+            f"{who}: faces must name vertices 0 .. {points.shape[1] - 1}, "
+            f"got {triangles.min()} .. {triangles.max()}"
         )

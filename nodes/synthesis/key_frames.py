@@ -1,0 +1,151 @@
+"""The best motion between key frames."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Annotated
+
+import numpy as np
+
+from reperform.nodes.declaration import Param, node
+from reperform.nodes.kernels.key_frame_search import KeyFrameSearch, Spot, Targets, Walk
+from reperform.nodes.kernels.path_frames import path_frames
+from reperform.nodes.product import Dataset
+from reperform.nodes.products.mesh import MeshSequence
+from reperform.nodes.products.motion import MotionGraph, MotionPath
+from reperform.nodes.synthesis.graph_walk import ground_tracks, motion_path, passages_of
+
+_WHO = "synthesis.key_frames"
+# How far beyond the targets the nearest feasible one is looked for: factors of the horizon.
+_WIDER = (1, 2, 4)
+
+
+@node(over="dataset", memory=1.5)
+def key_frames(
+    graph: MotionGraph,
+    meshes: Dataset[MeshSequence],
+    *,
+    start: Annotated[str, Param(about="first key frame, as TAKE:FRAME")],
+    end: Annotated[str, Param(about="last key frame, as TAKE:FRAME")],
+    via: Annotated[
+        tuple[str, ...], Param(about="key frames to meet in between, in order, as TAKE:FRAME")
+    ] = (),
+    distance: Annotated[float | None, Param("m", 0.0, 1000.0, "way of the centroid on the ground")] = None,
+    duration: Annotated[float | None, Param("s", 0.0, 600.0, "length of the motion")] = None,
+    distance_weight: Annotated[float, Param("1/m", 0.0, 1e6, "cost of a metre too far or too short")] = 10
+    / 3,
+    duration_weight: Annotated[float, Param("1/s", 0.0, 1e6, "cost of a second too long or too short")] = 2.5,
+    distance_tolerance: Annotated[float, Param("m", 0.0, 1000.0, "greatest error of the distance")] = 0.05,
+    duration_tolerance: Annotated[float, Param("s", 0.0, 600.0, "greatest error of the duration")] = 0.08,
+    longest: Annotated[
+        float, Param("s", 0.1, 600.0, "longest motion considered when no duration is asked")
+    ] = 30.0,
+    nearest: Annotated[bool, Param(about="take the nearest motion where the targets cannot be met")] = False,
+) -> MotionPath:
+    """The cheapest motion that shows all key frames in order and meets the targets within their tolerances.
+
+        C = sum of transition costs + distance_weight |dist - distance| + duration_weight |time - duration|
+        dist = arc length of the centroid's track on the ground, blended frames included;  time = frames / fps
+
+    Key frames are captured frames, shown unblended. The minimum is over all walks through the graph, loops
+    included, by dynamic programming over (place, steps, distance). `bound` is proved to be under the cost of
+    every
+    walk within the tolerances: cost - bound is at most what the grid of distances rounds off.
+
+    Raises ValueError where a key frame does not exist, the key frames cannot be joined, or no walk is within
+    the tolerances; it then names the nearest distance and duration that can be met. With `nearest` that walk
+    is returned instead, its errors to be read from the product.
+
+    Source: Huang, Tejera, Collomosse and Hilton 2015, ACM TOG (000 section 5.1, eqs 7-13).
+    Departure: 000 enumerates walks and attaches loops by integer programming (eqs 14-25), where the target is
+    subtracted once per loop and loops need not connect; the dynamic program covers every connected walk, with
+    tolerances as hard limits. Weights as in 000: 0.3 m costs as much as 10 frames at 25 Hz.
+    """
+    if distance_tolerance <= 0 or duration_tolerance <= 0:
+        raise ValueError(
+            f"{_WHO}: tolerances must be above 0, got {distance_tolerance} m, {duration_tolerance} s"
+        )
+    rate = float(graph.fps)
+    keys = [_spot(text, graph) for text in (start, *via, end)]
+    passages, tracks = passages_of(graph), ground_tracks(graph, meshes, _WHO)
+    search = KeyFrameSearch.build(passages, np.asarray(graph.cost), tracks, keys)
+    if not search.reachable:
+        raise ValueError(
+            f"{_WHO}: no walk through the graph shows {', '.join((start, *via, end))} in this order: "
+            f"allow more transitions, a higher threshold, or other key frames"
+        )
+    asked = Targets(
+        np.nan if distance is None else distance,
+        np.nan if duration is None else duration * rate - 1.0,
+        distance_weight,
+        duration_weight / rate,
+        distance_tolerance,
+        duration_tolerance * rate,
+    )
+    horizon = int(np.ceil((longest if duration is None else duration + duration_tolerance) * rate))
+    reach = np.inf if distance is None else distance + distance_tolerance
+    walk = search.best(asked, horizon, reach)
+    if walk is None:
+        walk = _nearest(search, asked, horizon, reach, rate)
+        if walk is None or not nearest:
+            raise ValueError(_infeasible((start, *via, end), distance, duration, walk, rate))
+    frames = path_frames(keys[0].take, keys[0].frame, [passages[k] for k in walk.passages], keys[-1].frame)
+    return motion_path(
+        graph, frames, tracks, walk.passages,
+        distance=asked.distance, duration=np.nan if duration is None else duration,
+        cost=walk.cost, bound=walk.bound,
+    )  # fmt: skip
+
+
+def _spot(text: str, graph: MotionGraph) -> Spot:
+    """A captured frame from TAKE:FRAME; frames count from 0, negative ones from the end."""
+    takes = [str(take) for take in np.asarray(graph.takes)]
+    take, _, frame = text.rpartition(":")
+    if take not in takes:
+        raise ValueError(f"{_WHO}: key frame {text!r} must read TAKE:FRAME with a take of {', '.join(takes)}")
+    count = int(np.asarray(graph.frames)[takes.index(take)])
+    try:
+        number = int(frame)
+    except ValueError:
+        raise ValueError(
+            f"{_WHO}: key frame {text!r} must read TAKE:FRAME with a whole frame number"
+        ) from None
+    if not -count <= number < count:
+        raise ValueError(f"{_WHO}: key frame {text!r}: take {take} has frames 0 .. {count - 1}")
+    return Spot(takes.index(take), number % count)
+
+
+def _nearest(search: KeyFrameSearch, asked: Targets, horizon: int, reach: float, rate: float) -> Walk | None:
+    """The nearest walk, looked for ever wider until nothing outside the table can be nearer."""
+    walk = None
+    for factor in _WIDER:
+        steps = factor * horizon + int(4 * rate)
+        far = factor * reach + 2.0
+        walk = search.nearest(asked, steps, far)
+        if walk is not None:
+            error = max(
+                np.nan_to_num(abs(walk.distance - asked.distance)) / asked.distance_tolerance,
+                np.nan_to_num(abs(walk.steps - asked.steps)) / asked.steps_tolerance,
+            )
+            outside = min(
+                np.nan_to_num(far - asked.distance, nan=np.inf) / asked.distance_tolerance,
+                np.nan_to_num(steps - asked.steps, nan=np.inf) / asked.steps_tolerance,
+            )
+            if error <= outside:
+                return walk
+    return walk
+
+
+def _infeasible(
+    keys: Sequence[str], distance: float | None, duration: float | None, walk: Walk | None, rate: float
+) -> str:
+    asked = " in ".join(
+        f"{value:g} {unit}" for value, unit in ((distance, "m"), (duration, "s")) if value is not None
+    )
+    text = f"{_WHO}: no walk through {', '.join(keys)} covers {asked or 'anything'} within the tolerances"
+    if walk is None:
+        return f"{text}, nor any near it: ask for a longer duration"
+    return (
+        f"{text}; the nearest that can be met is {walk.distance:.3f} m in {(walk.steps + 1) / rate:.2f} s: ask for "
+        f"that, widen the tolerances, or set nearest: true"
+    )
