@@ -43,7 +43,7 @@ class Targets(NamedTuple):
 
 
 class Walk(NamedTuple):
-    """A walk found: its transitions, what it covers and costs, and a proved lower bound of any walk's cost."""
+    """A walk found: its transitions, what it covers and costs, a proved lower bound of any walk's cost."""
 
     passages: tuple[int, ...]
     distance: float
@@ -191,7 +191,8 @@ class KeyFrameSearch:
 def _units(edges: _Edges, quantum: float) -> np.ndarray:
     """Lengths in whole quanta.
 
-    What is rounded off at the start and end of moves along one take cancels out, so that a walk is off by at most one quantum per transition and one for its ends.
+    What is rounded off at the start and end of moves along one take cancels out, so that a walk is off
+    by at most one quantum per transition and one for its ends.
     """
     start, end = edges.start / quantum, edges.end / quantum
     exact = edges.length / quantum + (np.rint(end) - end) - (np.rint(start) - start)
@@ -294,7 +295,7 @@ class _Layout:
         passage: int,
         starts: float,
     ) -> list[tuple[int, int, int]]:
-        """Add the moves on from a frame of a take: to the next stop, and to the last key frame where it is met."""
+        """Add the moves on from a frame: to the take's next stop, and to the last key frame if met."""
         stop = next((d for d in self.stops[take] if d > frame or (inclusive and d == frame)), None)
         last = stop if stop is not None else len(self.length[take]) - 1
         place, at = frame, inclusive

@@ -9,7 +9,7 @@ from numba import njit
 
 
 class Transitions(NamedTuple):
-    """Transitions of an ordered pair, best first: from frame m of one to frame n of the other, half length L."""
+    """Transitions of an ordered pair, best first: from frame m of one to n of the other, half length L."""
 
     m: np.ndarray
     n: np.ndarray

@@ -104,8 +104,8 @@ def surface(
                 found.append(_Candidate(*ends, int(m), int(n), int(length), float(cost) / largest))
     if not found:
         raise ValueError(
-            f"motion_graph.surface: no transition within threshold {threshold}, L {shortest} to {longest} s and "
-            f"the edits among takes {', '.join(takes)}: raise the threshold, shorten L, or use longer takes"
+            f"motion_graph.surface: no transition within threshold {threshold}, L {shortest} to {longest} s "
+            f"and the edits among takes {', '.join(takes)}: raise the threshold, shorten L, use longer takes"
         )
     return _graph(found, takes, meshes, fps)
 

@@ -19,10 +19,8 @@ def passages_of(graph: MotionGraph) -> list[Passage]:
     source, target, m, n, length = (np.asarray(field).astype(int).tolist() for field in fields)
     yaw, offset = np.asarray(graph.yaw), np.asarray(graph.offset)
     return [
-        Passage(
-            *(int(column[k]) for column in columns), Placement(float(yaw[k]), offset[k].astype(np.float64))
-        )
-        for k in range(len(yaw))
+        Passage(*row, Placement(float(yaw[k]), offset[k].astype(np.float64)))
+        for k, row in enumerate(zip(source, target, m, n, length, strict=True))
     ]
 
 

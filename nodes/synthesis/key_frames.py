@@ -146,6 +146,6 @@ def _infeasible(
     if walk is None:
         return f"{text}, nor any near it: ask for a longer duration"
     return (
-        f"{text}; the nearest that can be met is {walk.distance:.3f} m in {(walk.steps + 1) / rate:.2f} s: ask for "
-        f"that, widen the tolerances, or set nearest: true"
+        f"{text}; the nearest that can be met is {walk.distance:.3f} m in {(walk.steps + 1) / rate:.2f} s: "
+        f"ask for that, widen the tolerances, or set nearest: true"
     )
