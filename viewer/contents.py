@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import typing
 from typing import Any
 
 import numpy as np
@@ -68,7 +67,9 @@ def mesh_frame(product: Any, frame: int) -> tuple[np.ndarray, np.ndarray]:
     """
     mesh = mesh_of(product)
     if mesh is None:
-        raise TypeError(f"a surface can be shown of a product with vertices and faces, got {_kind(product)}")
+        raise TypeError(
+            f"a surface can be shown of a product with vertices and faces, got {type(product).__name__}"
+        )
     axes = product_fields(type(mesh))
     read = {
         name: np.asarray(array[frame] if "frame" in axes[name].items else array)
@@ -113,7 +114,3 @@ def summary(product: Any) -> list[tuple[str, str]]:
 def _length(array: Any) -> int:
     shape = getattr(array, "shape", None)
     return int(shape[0]) if shape else len(array)
-
-
-def _kind(product: Any) -> str:
-    return typing.cast(str, type(product).__name__)

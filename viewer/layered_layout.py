@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 Node = Hashable
 SWEEPS = 24
@@ -27,7 +28,7 @@ class Layout:
 def layered_layout(
     nodes: Sequence[Node],
     edges: Sequence[tuple[Node, Node]],
-    heights: Mapping[Node, float],
+    heights: Mapping[Any, float],
     gap: float,
     lane: float,
 ) -> Layout:

@@ -107,8 +107,11 @@ def write_text(
 
 
 @contextmanager
-def figure(size: tuple[int, int]) -> Iterator[Any]:
-    """A matplotlib figure of width x height pixels in the house style; `pixels(fig)` reads it."""
+def figure(size: tuple[int, int], layout: str = "constrained") -> Iterator[Any]:
+    """A matplotlib figure of width x height pixels in the house style; `pixels(fig)` reads it.
+
+    layout: matplotlib's; `compressed` where axes have an aspect of their own.
+    """
     import matplotlib
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -132,7 +135,8 @@ def figure(size: tuple[int, int]) -> Iterator[Any]:
         "savefig.facecolor": PAPER,
     }
     with matplotlib.rc_context(style):
-        fig = Figure(figsize=(size[0] / DPI, size[1] / DPI), dpi=DPI, layout="constrained")
+        fig: Any = Figure(figsize=(size[0] / DPI, size[1] / DPI), dpi=DPI, layout=layout)
+        fig.get_layout_engine().set(w_pad=0.14, h_pad=0.14)
         FigureCanvasAgg(fig)
         yield fig
 

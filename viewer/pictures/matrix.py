@@ -19,7 +19,7 @@ def matrix_picture(product: Dissimilarity, frame: int, look: Look) -> np.ndarray
     """Frames of one take against frames of another; dark is alike, circles are transitions."""
     distance = np.asarray(product.distance)
     a, b = look.pair or ("first take", "second take")
-    with figure(look.size) as fig:
+    with figure(look.size, "compressed") as fig:
         axis = fig.subplots()
         drawn = axis.imshow(distance, cmap=COLOURS, interpolation="nearest", aspect="equal", vmin=0)
         axis.spines[:].set_visible(False)
@@ -41,7 +41,7 @@ def matrices_picture(products: Mapping[tuple[str, str], Dissimilarity], look: Lo
     whole = np.full((total, total), np.nan, np.float32)
     for (a, b), product in products.items():
         whole[start[a] : start[a] + length[a], start[b] : start[b] + length[b]] = np.asarray(product.distance)
-    with figure(look.size) as fig:
+    with figure(look.size, "compressed") as fig:
         axis = fig.subplots()
         drawn = axis.imshow(whole, cmap=COLOURS, interpolation="antialiased", vmin=0)
         for take in takes[1:]:

@@ -71,7 +71,7 @@ def _draw_graph(axis: Any, product: MotionGraph, takes: list[str]) -> None:
     middle = places.mean(0)
     for (a, b), (count, best) in sorted(edges.items()):
         dear = (best - low) / (high - low) if high > low else 0.0
-        style = {
+        style: dict[str, Any] = {
             "color": tint(INK, 0.15 + 0.55 * dear),
             "linewidth": 0.8 + 0.5 * min(count, 6),
             "mutation_scale": 12,
@@ -122,7 +122,7 @@ def _draw_loop(axis: Any, place: np.ndarray, middle: np.ndarray, count: int, sty
     length = float(np.linalg.norm(out))
     out = out / length if length > 1e-9 else np.array([0.0, 1.0])
     side = np.array([out[1], -out[0]])
-    a, b = place + 0.16 * out - 0.14 * side, place + 0.16 * out + 0.14 * side
+    a, b = ((place + 0.14 * out + s * side).tolist() for s in (-0.14, 0.14))
     axis.add_patch(FancyArrowPatch(a, b, connectionstyle="arc3,rad=-1.3", zorder=1, **style))
     _count(axis, place + 0.35 * out, count)
 

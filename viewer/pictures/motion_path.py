@@ -31,7 +31,7 @@ def motion_path_picture(product: MotionPath, frame: int, look: Look) -> np.ndarr
 
 
 def ground_track(source: Provenance, tracks: Any) -> np.ndarray | None:
-    """Ground position (frames, 2) in metres (x, z) of every synthesised frame; None where a take has no track.
+    """Ground position (frames, 2) in metres (x, z) of every synthesised frame; None where a track lacks.
 
     Each source's captured centroid is placed by x_world = R_y(yaw) x + (offset_x, 0, offset_z), then blended.
     """
@@ -39,7 +39,7 @@ def ground_track(source: Provenance, tracks: Any) -> np.ndarray | None:
     if any(take not in tracks for take in takes):
         return None
     take, index = np.asarray(source.take), np.asarray(source.source_frame)
-    weight, yaw = np.asarray(source.weight, np.float64), np.asarray(source.yaw, np.float64)
+    weight, yaw = (np.asarray(part, np.float64) for part in (source.weight, source.yaw))
     offset = np.asarray(source.offset, np.float64)
     placed = np.zeros((len(take), 2))
     for k in (0, 1):

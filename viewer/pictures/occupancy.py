@@ -14,7 +14,7 @@ def occupancy_picture(product: Occupancy, frame: int, look: Look) -> np.ndarray:
     field = np.asarray(product.probability[frame])
     origin, voxel = np.asarray(product.origin[frame]), float(np.asarray(product.voxel))
     low, high = origin - voxel / 2, origin + voxel * (np.array(field.shape) - 0.5)
-    with figure(look.size) as fig:
+    with figure(look.size, "compressed") as fig:
         axes = fig.subplots(1, 3, width_ratios=[max(span, 0.05) for span in (high - low)[[0, 2, 0]]])
         views = (
             ("front (along z)", field.max(2).T, 0, 1),

@@ -51,8 +51,8 @@ PAINTERS: dict[str, Painter] = {
 def picture(product: Any, frame: int = 0, look: Look | None = None) -> np.ndarray:
     """An RGB uint8 picture (H, W, 3) of one frame of a product, exactly `look.size` large.
 
-    Products with a mesh are drawn in space, the others as photographs, plots or tables; a product that nothing
-    fits is shown by the range of its fields. Fields may be lazy: only what is shown is read.
+    Products with a mesh are drawn in space, the others as photographs, plots or tables; a product that
+    nothing fits is shown by the range of its fields. Fields may be lazy: only what is shown is read.
 
     Raises TypeError where it is not a product, ValueError where it has no such frame.
     """
@@ -65,9 +65,8 @@ def picture(product: Any, frame: int = 0, look: Look | None = None) -> np.ndarra
     if not 0 <= frame < max(count, 1):
         raise ValueError(f"{type(product).__name__} has frames 0 .. {count - 1}, got {frame}")
     if count == 0:
-        return draw_table(
-            ["field", "holds"], [[Cell(a), Cell(b)] for a, b in summary(product)], look.size, "no frames"
-        )
+        rows = [[Cell(name), Cell(layout)] for name, layout in summary(product)]
+        return draw_table(["field", "holds"], rows, look.size, f"{type(product).__name__} without frames")
     return painter(product)(product, frame, look)
 
 

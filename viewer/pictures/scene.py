@@ -41,7 +41,7 @@ class Line:
     """A polyline in space: points (N, 3) metres, colour (0-1), width in pixels."""
 
     points: np.ndarray
-    colour: tuple[float, float, float]
+    colour: Sequence[float]
     width: float = 2.0
 
 
@@ -100,9 +100,9 @@ def draw_scene(
 ) -> np.ndarray:
     """The scene as an RGB uint8 picture (H, W, 3), antialiased.
 
-    ground: height of the ground plane in metres (None: no ground).  ground_grid: spacing of its lines in metres.
-    Light: a key light and a rim light that move with the eye, a sky that is brighter above, and creases darkened
-    where a pixel lies deeper than its surroundings.
+    ground: height of the ground plane in metres (None: no ground).  ground_grid: spacing of its lines, m.
+    Light: a key light and a rim light that move with the eye, a sky that is brighter above, and creases
+    darkened where a pixel lies deeper than its surroundings.
 
     Source: Luft, Colditz, Deussen 2006, SIGGRAPH, "Image enhancement by unsharp masking the depth buffer".
     """
@@ -162,7 +162,7 @@ def _backdrop(
 
 
 def _grid_lines(here: np.ndarray, pixel: np.ndarray, spacing: float) -> np.ndarray:
-    """Share of grid line in each pixel: lines of 1 px at least, antialiased, fading where they get too dense."""
+    """Share of grid line in each pixel: lines of 1 px at least, fading where they get too dense."""
     off = abs((here / spacing + 0.5) % 1.0 - 0.5) * spacing
     width = np.maximum(0.004, 1.2 * pixel)[:, None]
     lines = np.clip(1.5 - off / width, 0, 1)
