@@ -67,7 +67,7 @@ class Run(Mapping[str, Any]):
     """
 
     def __init__(self, pipeline: Pipeline, url: str, engine: Engine, report: RunReport) -> None:
-        self.pipeline, self.report, self._url, self._engine = pipeline, report, url, engine
+        self.pipeline, self.report, self.url, self._engine = pipeline, report, url, engine
         self.notes = tuple(engine.notes)
 
     def __getitem__(self, step: str) -> Any:
@@ -90,7 +90,7 @@ class Run(Mapping[str, Any]):
     def product(self, step: str, label: str = "") -> Any:
         """The product of one unit, its fields read on demand."""
         spec = self.pipeline.catalogue.products[self.pipeline.steps[step].node.output]
-        return lazy_product(self._url, self._engine.manifest(step, label).name, "", spec.load(), spec.fields)
+        return lazy_product(self.url, self._engine.manifest(step, label).name, "", spec.load(), spec.fields)
 
     def digest(self, step: str, label: str = "") -> str:
         """Digests of all fields of a unit's product, in one text."""
@@ -99,4 +99,4 @@ class Run(Mapping[str, Any]):
 
     def lengths(self, step: str, label: str = "") -> Mapping[str, int]:
         """Lengths along `frame` and `camera` of a unit's product."""
-        return open_unit(self._url, self._engine.manifest(step, label).name).contents.lengths
+        return open_unit(self.url, self._engine.manifest(step, label).name).contents.lengths

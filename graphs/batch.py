@@ -96,7 +96,11 @@ def run_batch(batch: Batch) -> Outcome:
     try:
         function = getattr(importlib.import_module(batch.function[0]), batch.function[1])
         with _threads(batch.threads):
-            return _run_items(batch, function) if batch.over in ("frame", "view") else _run_whole(batch, function)
+            return (
+                _run_items(batch, function)
+                if batch.over in ("frame", "view")
+                else _run_whole(batch, function)
+            )
     except DamagedResult as damage:
         rows = None if damage.rows is None else tuple(damage.rows)
         return Outcome(damaged=(damage.segment, rows, damage.reason))
@@ -171,7 +175,9 @@ def _by_output(output: Any, batch: Batch) -> list[Any]:
         return [output]
     if not isinstance(output, Mapping) or list(output) != list(batch.outputs):
         got = list(output) if isinstance(output, Mapping) else type(output).__name__
-        raise TypeError(f"node {batch.node} must return one product per take, {list(batch.outputs)} in this order, got {got}")
+        raise TypeError(
+            f"node {batch.node} must return one product per take, {list(batch.outputs)} in this order, got {got}"
+        )
     return list(output.values())
 
 
@@ -203,7 +209,9 @@ def _whole_fields(output: Any, batch: Batch) -> tuple[dict[str, Any], dict[str, 
         spec = batch.fields[name]
         if spec.ragged:
             if not isinstance(value, Ragged):
-                raise TypeError(f"node {batch.node}: field {name!r} differs from frame to frame: return a Ragged, got {type(value).__name__}")
+                raise TypeError(
+                    f"node {batch.node}: field {name!r} differs from frame to frame: return a Ragged, got {type(value).__name__}"
+                )
             arrays[name] = [_checked(frame, spec, list(spec.axes[1:]), name, batch.node) for frame in value]
         else:
             array = _checked(value, spec, list(spec.axes), name, batch.node)
@@ -218,7 +226,9 @@ def _whole_fields(output: Any, batch: Batch) -> tuple[dict[str, Any], dict[str, 
         for axis, length in zip(spec.items, tables[name].shape[:-1], strict=True):
             known, first = lengths.setdefault(axis, (length, name))
             if known != length:
-                raise ValueError(f"node {batch.node}: field {name!r} has {length} along {axis!r}, but {first!r} has {known}")
+                raise ValueError(
+                    f"node {batch.node}: field {name!r} has {length} along {axis!r}, but {first!r} has {known}"
+                )
     return arrays, tables
 
 
@@ -232,7 +242,9 @@ def _checked(value: Any, spec: FieldSpec, axes: Sequence[str], name: str, node: 
         not axis.isdigit() or int(axis) == length for axis, length in zip(axes, array.shape, strict=True)
     )
     if not fits:
-        raise ValueError(f"node {node}: field {name!r} must have axes ({', '.join(axes)}), got shape {array.shape}")
+        raise ValueError(
+            f"node {node}: field {name!r} must have axes ({', '.join(axes)}), got shape {array.shape}"
+        )
     return array
 
 
@@ -241,13 +253,16 @@ class _Inputs:
 
     def __init__(self, batch: Batch) -> None:
         self._batch = batch
-        self._whole = {feed.port: _whole_argument(batch.url, feed) for feed in batch.feeds if not _is_cut(feed)}
+        self._whole = {
+            feed.port: _whole_argument(batch.url, feed) for feed in batch.feeds if not _is_cut(feed)
+        }
         self._ahead: dict[str, dict[tuple[str, int, int | None], np.ndarray]] = {}
         self._constants: dict[tuple[str, str, int | None], np.ndarray] = {}
 
     def of(self, position: int) -> list[Any]:
         return [
-            self._cut(feed, position) if _is_cut(feed) else self._whole[feed.port] for feed in self._batch.feeds
+            self._cut(feed, position) if _is_cut(feed) else self._whole[feed.port]
+            for feed in self._batch.feeds
         ]
 
     def _cut(self, feed: Feed, position: int) -> Any:
@@ -277,12 +292,16 @@ class _Inputs:
         arrays = unit.frames(name, range(unit.contents.lengths["frame"]), camera)
         return Ragged(arrays) if spec.ragged else np.stack(arrays)
 
-    def _frame(self, feed: Feed, unit: Any, name: str, frame: int, camera: int | None, position: int) -> np.ndarray:
+    def _frame(
+        self, feed: Feed, unit: Any, name: str, frame: int, camera: int | None, position: int
+    ) -> np.ndarray:
         ahead = self._ahead.setdefault(f"{feed.port}.{name}", {})
         if (name, frame, camera) not in ahead:
             wanted = self._upcoming(position, frame, camera, feed.by_camera)
             text = unit.dtype(name).kind == "U"
-            size = 1 if text else int(np.prod(unit.shape(name, frame), dtype=float)) * unit.dtype(name).itemsize
+            size = (
+                1 if text else int(np.prod(unit.shape(name, frame), dtype=float)) * unit.dtype(name).itemsize
+            )
             wanted = wanted[: max(1, READ_AHEAD // max(1, size))]
             keep = {key: value for key, value in ahead.items() if key[1] >= frame - 8}
             arrays = unit.frames(name, wanted, camera)
@@ -313,7 +332,9 @@ def _whole_argument(url: str, feed: Feed) -> Any:
         return whole_product(url, feed.manifests[0][1], feed.part, kind, feed.fields)
     if feed.many == "pair":
         return tuple(whole_product(url, name, feed.part, kind, feed.fields) for _, name in feed.manifests)
-    products = {label: lazy_product(url, name, feed.part, kind, feed.fields) for label, name in feed.manifests}
+    products = {
+        label: lazy_product(url, name, feed.part, kind, feed.fields) for label, name in feed.manifests
+    }
     if feed.many == "dataset":
         return products
     return {tuple(label.split("/", 1)): product for label, product in products.items()}

@@ -18,7 +18,10 @@ from reperform.storage.store import Store
 def complete(unit: Unit, work: Work, fields: Mapping[str, FieldSpec], store: Store) -> dict[str, Manifest]:
     """Write the manifests of a unit whose items all have results. Raises ValueError where the items disagree."""
     if work.outputs is not None:
-        contents = {take: _whole([work.results[key].segment], work.results[key].tables, fields) for take, key in zip(work.outputs, work.keys, strict=True)}
+        contents = {
+            take: _whole([work.results[key].segment], work.results[key].tables, fields)
+            for take, key in zip(work.outputs, work.keys, strict=True)
+        }
         keys = dict(zip(work.outputs, work.keys, strict=True))
     elif work.layout == "whole":
         result = work.results[unit.key]
@@ -60,7 +63,9 @@ def _stacked(work: Work, fields: Mapping[str, FieldSpec]) -> Contents:
         for position, axis in reversed(list(enumerate(cut))):
             if axis not in axes[name]:
                 if (table != np.take(table, [0], axis=position)).any():
-                    raise ValueError(f"field {name!r} has no {axis} axis, so it must be the same for every {axis}, but it differs")
+                    raise ValueError(
+                        f"field {name!r} has no {axis} axis, so it must be the same for every {axis}, but it differs"
+                    )
                 table = np.take(table, 0, axis=position)
         tables[name] = np.ascontiguousarray(table)
         lengths |= dict(zip(axes[name], table.shape[:-1], strict=True))

@@ -52,7 +52,9 @@ def find_pipeline(name: str) -> Path:
     if shipped.is_file():
         return shipped
     known = sorted(p.relative_to(SHIPPED).with_suffix("").as_posix() for p in SHIPPED.rglob("*.yaml"))
-    raise DefinitionError(f"no pipeline {name!r}: neither a file nor a shipped pipeline; {nearest(name, known)}")
+    raise DefinitionError(
+        f"no pipeline {name!r}: neither a file nor a shipped pipeline; {nearest(name, known)}"
+    )
 
 
 def read_document(path: Path, sets: Sequence[str] = ()) -> Document:
@@ -65,7 +67,9 @@ def read_document(path: Path, sets: Sequence[str] = ()) -> Document:
 
 def _read(path: Path, above: tuple[Path, ...]) -> Document:
     if path.resolve() in above:
-        raise DefinitionError(f"include: {path} includes itself by way of {' -> '.join(p.name for p in above)}")
+        raise DefinitionError(
+            f"include: {path} includes itself by way of {' -> '.join(p.name for p in above)}"
+        )
     source = read_yaml(path)
     name = path.stem
     if SHIPPED in path.resolve().parents:
@@ -81,7 +85,10 @@ def _read(path: Path, above: tuple[Path, ...]) -> Document:
         if not isinstance(entry, dict) or "pipeline" not in entry or set(entry) - {"pipeline", "vars"}:
             raise DefinitionError("include: expected a name or path, or {pipeline: ..., vars: {...}}", where)
         beside = path.parent / str(entry["pipeline"])
-        _merge(document, _read(beside if beside.is_file() else find_pipeline(entry["pipeline"]), (*above, path.resolve())))
+        _merge(
+            document,
+            _read(beside if beside.is_file() else find_pipeline(entry["pipeline"]), (*above, path.resolve())),
+        )
         document.vars |= entry.get("vars", {})
     own = Document(name, str(path), places={keys: source.place(*keys) for keys in source.lines})
     for key, value in source.value.items():
@@ -89,9 +96,13 @@ def _read(path: Path, above: tuple[Path, ...]) -> Document:
             setattr(own, key, value)
     for step, body in own.steps.items():
         if not isinstance(body, dict):
-            raise DefinitionError(f"step {step!r} must be a mapping with the key `node`", source.place("steps", step))
+            raise DefinitionError(
+                f"step {step!r} must be a mapping with the key `node`", source.place("steps", step)
+            )
         if not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_-]*", step):
-            raise DefinitionError(f"step {step!r}: a name is letters, digits, _ and -", source.place("steps", step))
+            raise DefinitionError(
+                f"step {step!r}: a name is letters, digits, _ and -", source.place("steps", step)
+            )
         _check_keys(body, STEP_KEYS, f"step {step!r}", source.place, ("steps", step))
     _merge(document, own)
     return document
@@ -125,7 +136,7 @@ def _merge(base: Document, over: Document) -> None:
 
 def _override(document: Document, override: str) -> None:
     target, equals, text = override.partition("=")
-    place = Place(f"--set {override}", 1)
+    place = Place(f"--set {override}", 0)
     if not equals:
         raise DefinitionError("expected STEP.PARAM=VALUE or VARIABLE=VALUE", place)
     value = parse_yaml(text, f"--set {override}").value if text.strip() else ""
@@ -206,19 +217,25 @@ def read_takes(document: Document) -> dict[str, dict[str, Any]]:
         if not paths:
             raise DefinitionError(f"takes: nothing matches {pattern!r} (looked from {Path.cwd()})", place)
         return {
-            Path(p).stem: {"vars": {"take": Path(p).stem, "path": os.path.abspath(p)}, "params": {}} for p in paths
+            Path(p).stem: {"vars": {"take": Path(p).stem, "path": os.path.abspath(p)}, "params": {}}
+            for p in paths
         }
     entries = {str(name): None for name in takes} if isinstance(takes, list) else takes
     found = {}
     for name, body in entries.items():
         body = body or {}
         if not isinstance(body, dict) or set(body) - {"vars", "params"}:
-            raise DefinitionError(f"take {name!r}: expected {{vars: ..., params: {{STEP: ...}}}}", document.place("takes", name))
+            raise DefinitionError(
+                f"take {name!r}: expected {{vars: ..., params: {{STEP: ...}}}}", document.place("takes", name)
+            )
         if "/" in name:
             raise DefinitionError(f"take {name!r}: a name has no slash", document.place("takes", name))
         for step in body.get("params") or {}:
             if step not in document.steps:
-                raise DefinitionError(f"take {name!r} sets parameters of an unknown step {step!r}: {nearest(step, document.steps)}", document.place("takes", name, "params", step))
+                raise DefinitionError(
+                    f"take {name!r} sets parameters of an unknown step {step!r}: {nearest(step, document.steps)}",
+                    document.place("takes", name, "params", step),
+                )
         found[name] = {"vars": {"take": name, **(body.get("vars") or {})}, "params": body.get("params") or {}}
     if not found:
         raise DefinitionError("takes: the list is empty", place)

@@ -30,10 +30,17 @@ BATCH_BYTES = 64 << 20
 class Progress(Protocol):
     """Who is told how far the work is."""
 
-    def start(self, step: str, total: int) -> None: ...
-    def advance(self, step: str, computed: int = 0, cached: int = 0, failed: int = 0) -> None: ...
-    def finish(self, step: str) -> None: ...
-    def note(self, text: str) -> None: ...
+    def start(self, step: str, total: int) -> None:
+        """A step has so many items (more)."""
+
+    def advance(self, step: str, computed: int = 1, cached: int = 0, failed: int = 0) -> None:
+        """So many of them are over."""
+
+    def finish(self, step: str) -> None:
+        """A step is over."""
+
+    def note(self, text: str) -> None:
+        """Something that a user should know."""
 
 
 class Silent:
@@ -42,7 +49,7 @@ class Silent:
     def start(self, step: str, total: int) -> None:
         """Say nothing."""
 
-    def advance(self, step: str, computed: int = 0, cached: int = 0, failed: int = 0) -> None:
+    def advance(self, step: str, computed: int = 1, cached: int = 0, failed: int = 0) -> None:
         """Say nothing."""
 
     def finish(self, step: str) -> None:
@@ -81,7 +88,7 @@ class Engine:
         self._load: list[float] = [0.0, 0.0]
         self._tag = 0
         self._pace: dict[str, tuple[float | None, float | None]] = {}
-        self._started: set[str] = set()
+        self._closed: set[str] = set()
         self.notes: list[str] = []
         self._make_units()
 
@@ -124,7 +131,9 @@ class Engine:
         finally:
             if self._executor is not None:
                 self._executor.close()
-        report = RunReport(self.pipeline.name, time.perf_counter() - start, step_reports(self.chosen, self.units))
+        report = RunReport(
+            self.pipeline.name, time.perf_counter() - start, step_reports(self.chosen, self.units)
+        )
         self._remember()
         failures = [error for unit in self.units.values() for error in unit.errors]
         if failures:
@@ -133,7 +142,6 @@ class Engine:
 
     def _resolve(self, unit: Unit) -> None:
         """Answer a unit from the index, or open it for work."""
-        self._announce(unit)
         try:
             self.resolver.key(unit)
             if self._answer(unit):
@@ -160,10 +168,22 @@ class Engine:
                     first.add(key)
                     work.queue.append(position)
             unit.cached += len(work.keys) - len(work.queue)
-        self.progress.advance(unit.step.name, cached=len(work.items) - len(work.queue))
+        self.progress.start(unit.step.name, 0 if unit.mended else len(work.items))
+        self.progress.advance(unit.step.name, 0, 0 if unit.mended else len(work.items) - len(work.queue))
         unit.status = "open"
         self._open.append(unit)
         self._settle(unit)
+
+    def peek(self, unit: Unit) -> tuple[int, int]:
+        """(missing, all) items of a unit whose inputs are all complete; computes nothing."""
+        self.resolver.key(unit)
+        if self._answer(unit):
+            return 0, unit.cached
+        work = self.resolver.expand(unit)
+        if unit.step.node.volatile or work.outputs is not None:
+            return len(work.items), len(work.items)
+        found = self.store.index.results(work.keys)
+        return sum(key not in found for key in work.keys), len(work.keys)
 
     def _answer(self, unit: Unit) -> bool:
         """Whether the index has the whole unit; then it is done."""
@@ -185,7 +205,8 @@ class Engine:
         items = 1 if step.node.output_many == "dataset" else int(next(iter(found.values())).summary["items"])
         if not unit.mended:
             unit.cached = items
-            self.progress.advance(step.name, cached=items)
+            self.progress.start(step.name, items)
+            self.progress.advance(step.name, 0, items)
         self._finish(unit, found)
         return True
 
@@ -240,7 +261,9 @@ class Engine:
         node = unit.step.node
         if not self._in_flight:
             return True
-        return self._load[0] + node.threads <= self._executor.slots and self._load[1] + node.memory <= _memory()
+        return (
+            self._load[0] + node.threads <= self._executor.slots and self._load[1] + node.memory <= _memory()
+        )
 
     def _send(self, unit: Unit, work: Work) -> None:
         from reperform.graphs.batch import Batch
@@ -255,8 +278,12 @@ class Engine:
             if len(done) < len(keys) and not mine:
                 work.elsewhere.append(0)
         else:
-            work.elsewhere.extend(k for k in positions if work.keys[k] not in mine and work.keys[k] not in done)
-            unit.cached += sum(work.keys[k] in done for k in positions)
+            work.elsewhere.extend(
+                k for k in positions if work.keys[k] not in mine and work.keys[k] not in done
+            )
+            found = sum(work.keys[k] in done for k in positions)
+            unit.cached += found
+            self.progress.advance(unit.step.name, 0, found)
             positions = [k for k in positions if work.keys[k] in mine]
         if not positions:
             self._settle(unit)
@@ -285,12 +312,17 @@ class Engine:
     def _batch_size(self, node: str, waiting: int) -> int:
         """How many items make about half a second of work; one each until the pace is known."""
         if node not in self._pace:
-            self._pace[node] = (self.store.index.seconds_per_item(node), self.store.index.bytes_per_item(node))
+            self._pace[node] = (
+                self.store.index.seconds_per_item(node),
+                self.store.index.bytes_per_item(node),
+            )
         seconds, size = self._pace[node]
         if seconds is None or size is None:
             return max(1, min(8, waiting // (4 * self._executor.slots)))
         fair = -(-waiting // self._executor.slots)
-        return max(1, int(min(BATCH_SECONDS / max(seconds, 1e-6), BATCH_BYTES / max(size, 1), BATCH_ITEMS, fair)))
+        return max(
+            1, int(min(BATCH_SECONDS / max(seconds, 1e-6), BATCH_BYTES / max(size, 1), BATCH_ITEMS, fair))
+        )
 
     def _waits_elsewhere(self) -> bool:
         return not self._stopping and any(unit.work and unit.work.elsewhere for unit in self._open)
@@ -345,7 +377,9 @@ class Engine:
         self.store.index.commit(records)
         work.results |= records.results
         unit.seconds += seconds
-        errors = [(k, item) for k, item in zip(positions, outcome.items, strict=False) if item.error is not None]
+        errors = [
+            (k, item) for k, item in zip(positions, outcome.items, strict=False) if item.error is not None
+        ]
         for position, item in errors:
             work.failed[position] = item.error
             unit.errors.append(self._explain(unit, work, position, item))
@@ -358,7 +392,11 @@ class Engine:
 
     def _explain(self, unit: Unit, work: Work, position: int, item: Any) -> str:
         at = work.items[position]
-        where = "" if at.frame is None else f", frame {at.frame}" + ("" if at.camera is None else f", camera {at.camera}")
+        where = (
+            ""
+            if at.frame is None
+            else f", frame {at.frame}" + ("" if at.camera is None else f", camera {at.camera}")
+        )
         head = f"step {unit.item_text!r}{where} (node {unit.step.node.name}) failed: {item.error}"
         trace = f"\n{item.trace}" if os.environ.get("REPERFORM_TRACEBACK") and item.trace else ""
         return f"{head}\n  finished items are kept; rerun only what is missing with: {self._resume} {unit.step.name}{trace}"
@@ -374,7 +412,9 @@ class Engine:
             self._close_step(unit.step.name)
             return
         try:
-            manifests = complete(unit, work, self.pipeline.catalogue.products[unit.step.node.output].fields, self.store)
+            manifests = complete(
+                unit, work, self.pipeline.catalogue.products[unit.step.node.output].fields, self.store
+            )
         except ValueError as error:
             self._fail(unit, f"step {unit.item_text!r} (node {unit.step.node.name}): {error}")
             return
@@ -383,19 +423,25 @@ class Engine:
     def _mend(self, unit: Unit, positions: list[int], segment: str, rows: Any, reason: str) -> None:
         """An input turned out damaged: forget it, make it again, then come back to this unit."""
         if segment.startswith("manifests/"):
-            broken = [u for u in self.units.values() if any(segment.endswith(m.name) for m in u.manifests.values())]
+            broken = [
+                u for u in self.units.values() if any(segment.endswith(m.name) for m in u.manifests.values())
+            ]
             self.store.index.drop_manifests([m.key for u in broken for m in u.manifests.values()])
             self._note([f"damaged manifest {segment}: {reason}; it is made again"])
         else:
             broken = [
                 u
                 for u in self.units.values()
-                if u.manifests and any(segment in self.store.index.segments_of(m.key) for m in u.manifests.values())
+                if u.manifests
+                and any(segment in self.store.index.segments_of(m.key) for m in u.manifests.values())
             ]
             self._note([f"{self.store.forget(segment, rows)} ({reason})"])
         unit.mended += 1
         if unit.mended > 3 or not broken:
-            self._fail(unit, f"step {unit.item_text!r}: an input is damaged again and again ({reason}): check the disk")
+            self._fail(
+                unit,
+                f"step {unit.item_text!r}: an input is damaged again and again ({reason}): check the disk",
+            )
             return
         unit.status, unit.work = "waiting", None
         for source in broken:
@@ -404,19 +450,20 @@ class Engine:
                 source.status, source.mended = "waiting", source.mended + 1
                 self._ready.append(source)
 
-    def _announce(self, unit: Unit) -> None:
-        name = unit.step.name
-        if name not in self._started:
-            self._started.add(name)
-        if unit.status == "waiting" and not unit.mended:
-            self.progress.start(name, 0)
-
     def _close_step(self, step: str) -> None:
-        if all(u.status in ("done", "failed", "skipped") for u in self._units_of(step)):
+        if step not in self._closed and all(
+            u.status in ("done", "failed", "skipped") for u in self._units_of(step)
+        ):
+            self._closed.add(step)
+            self.progress.start(step, 0)
             self.progress.finish(step)
 
     def _units_of(self, step: str) -> list[Unit]:
-        labels = self.pipeline.steps[step].units if self.pipeline.steps[step].node.output_many != "dataset" else ("*",)
+        labels = (
+            self.pipeline.steps[step].units
+            if self.pipeline.steps[step].node.output_many != "dataset"
+            else ("*",)
+        )
         return [self.units[step, label] for label in labels]
 
     def _note(self, notes: Sequence[str]) -> None:
@@ -425,9 +472,10 @@ class Engine:
             self.progress.note(note)
 
     def _remember(self) -> None:
-        """Keep the parts of the keys for `why`, where they changed."""
+        """Keep the parts of the keys for `why` where they changed, and that these results are in use."""
         from reperform.graphs.history import changed_parts
 
+        self.store.index.touch([m.key for unit in self.units.values() for m in unit.manifests.values()])
         rows = changed_parts(self.pipeline.name, self.units.values(), self.store.index)
         if rows:
             self.store.index.remember(self.pipeline.name, rows)

@@ -10,13 +10,13 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Place:
-    """A line of a pipeline file."""
+    """A line of a pipeline file (line 0: what was given on the command line)."""
 
     file: str
     line: int
 
     def __str__(self) -> str:
-        return f"{self.file}:{self.line}"
+        return f"{self.file}:{self.line}" if self.line else self.file
 
 
 class DefinitionError(ValueError):

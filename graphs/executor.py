@@ -100,10 +100,14 @@ class Workers(Executor):
         try:
             client = Client(address, timeout=10)
         except OSError as error:
-            raise ConnectionError(f"no dask scheduler answers at {address}: start one with `dask scheduler` ({error})") from error
+            raise ConnectionError(
+                f"no dask scheduler answers at {address}: start one with `dask scheduler` ({error})"
+            ) from error
         if not client.nthreads():
             client.close()
-            raise ConnectionError(f"the dask scheduler at {address} has no workers: start some with `dask worker {address}`")
+            raise ConnectionError(
+                f"the dask scheduler at {address} has no workers: start some with `dask worker {address}`"
+            )
         return Workers(client)
 
     def submit(self, tag: Hashable, batch: Batch) -> None:
@@ -128,5 +132,9 @@ def open_executor(jobs: int | None, scheduler: Scheduler, cluster: str | None) -
     """The executor a run asks for. jobs None: as many as the processor has cores."""
     if cluster:
         return Workers.at(cluster)
-    jobs = jobs or len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else jobs or os.cpu_count() or 1
+    jobs = (
+        jobs or len(os.sched_getaffinity(0))
+        if hasattr(os, "sched_getaffinity")
+        else jobs or os.cpu_count() or 1
+    )
     return Threads(jobs) if scheduler == "threads" else Workers.local(jobs)

@@ -9,10 +9,21 @@ from typing import Any
 from reperform.graphs.unit import Unit
 from reperform.storage.index import Index
 
-LIBRARIES = ("numpy", "scipy", "numba", "opencv-contrib-python-headless", "trimesh", "vtk", "fast-simplification", "zarr")
+LIBRARIES = (
+    "numpy",
+    "scipy",
+    "numba",
+    "opencv-contrib-python-headless",
+    "trimesh",
+    "vtk",
+    "fast-simplification",
+    "zarr",
+)
 
 
-def changed_parts(pipeline: str, units: Iterable[Unit], index: Index) -> dict[tuple[str, str], dict[str, Any]]:
+def changed_parts(
+    pipeline: str, units: Iterable[Unit], index: Index
+) -> dict[tuple[str, str], dict[str, Any]]:
     """Parts of finished units that differ from those remembered."""
     known = index.remembered_keys(pipeline)
     changed = {

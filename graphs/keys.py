@@ -78,7 +78,9 @@ def item_keys(
             by_camera = port.by_camera and "camera" in axes
             constant.append(digest_bytes(port.name.encode(), name.encode(), bytes([by_frame, by_camera])))
             if not by_frame and not by_camera:
-                constant.append(digest_bytes(repr(table.shape).encode(), np.ascontiguousarray(table).tobytes()))
+                constant.append(
+                    digest_bytes(repr(table.shape).encode(), np.ascontiguousarray(table).tobytes())
+                )
                 continue
             cut = table if by_frame else np.broadcast_to(table, (frames, *table.shape))
             if cameras is None:

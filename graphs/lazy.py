@@ -47,12 +47,16 @@ class LazyField:
         if "frame" not in self._spec.axes:
             return self._unit.shape(self._name)
         inner = self._unit.shape(self._name, 0) if len(self) else tuple(0 for _ in self._spec.axes[1:])
-        ragged = [None if axis.endswith("*") else n for axis, n in zip(self._spec.axes[1:], inner, strict=True)]
+        ragged = [
+            None if axis.endswith("*") else n for axis, n in zip(self._spec.axes[1:], inner, strict=True)
+        ]
         return (len(self), *ragged)
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:
         if self._spec.ragged:
-            raise TypeError(f"field {self._name!r} differs in shape from frame to frame: index one frame of it")
+            raise TypeError(
+                f"field {self._name!r} differs in shape from frame to frame: index one frame of it"
+            )
         array = self.read()
         return array if dtype is None else array.astype(dtype)
 
@@ -74,7 +78,9 @@ class LazyField:
                 return view[rest[1:]] if rest[1:] else view
             array = self._unit.frames(self._name, [frame])[0]
             return array[rest] if rest else array
-        frames = range(len(self))[first] if isinstance(first, slice) else np.arange(len(self))[np.asarray(first)]
+        frames = (
+            range(len(self))[first] if isinstance(first, slice) else np.arange(len(self))[np.asarray(first)]
+        )
         got = self._frames([int(k) for k in frames])
         return got[(slice(None), *rest)] if rest else got
 

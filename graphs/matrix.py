@@ -36,7 +36,11 @@ def label(step: str, values: Mapping[str, Any]) -> str:
 
 def variants(step: str, names: list[str]) -> dict[str, str]:
     """Variants of a step by their label inside the brackets (a step without variants is its own)."""
-    return {name[len(step) + 1 : -1] or step: name for name in names if name == step or name.startswith(step + "[")}
+    return {
+        name[len(step) + 1 : -1] or step: name
+        for name in names
+        if name == step or name.startswith(step + "[")
+    }
 
 
 def _split(text: str) -> tuple[str, str]:

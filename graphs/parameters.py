@@ -31,7 +31,9 @@ def check(value: Any, spec: ParameterSpec) -> Any:
     """
     value = _typed(value, spec.schema, spec)
     for number in _numbers(value):
-        if spec.lower is not None and number < spec.lower or spec.upper is not None and number > spec.upper:
+        if (spec.lower is not None and number < spec.lower) or (
+            spec.upper is not None and number > spec.upper
+        ):
             low, high = (_bound(spec.lower, "-inf"), _bound(spec.upper, "inf"))
             unit = "" if spec.unit in ("1", "") else f" {spec.unit}"
             raise ValueError(f"must be within {low} .. {high}{unit}, got {number:g}")

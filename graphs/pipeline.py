@@ -16,7 +16,9 @@ from reperform.graphs.parameters import check
 from reperform.nodes.catalogue import Catalogue, NodeSpec, PortSpec, read_catalogue
 
 Domain = Literal["single", "take", "pair"]
-_REFERENCE = re.compile(r"^(?P<step>[A-Za-z_][\w-]*(?:\[[^\]]*\])?)(?:\.(?P<part>[\w.]+))?(?:/(?P<item>.+))?$")
+_REFERENCE = re.compile(
+    r"^(?P<step>[A-Za-z_][\w-]*(?:\[[^\]]*\])?)(?:\.(?P<part>[\w.]+))?(?:/(?P<item>.+))?$"
+)
 
 
 @dataclass(frozen=True)
@@ -104,7 +106,9 @@ class Pipeline:
         return run(self, **options)
 
 
-def read_pipeline(name: str | os.PathLike[str], sets: Sequence[str] = (), catalogue: Catalogue | None = None) -> Pipeline:
+def read_pipeline(
+    name: str | os.PathLike[str], sets: Sequence[str] = (), catalogue: Catalogue | None = None
+) -> Pipeline:
     """Read and check a pipeline by path or shipped name. Raises DefinitionError before anything runs."""
     document = read_document(find_pipeline(os.fspath(name)), sets)
     return build(document, catalogue or read_catalogue())
@@ -116,7 +120,9 @@ def build(document: Document, catalogue: Catalogue) -> Pipeline:
         raise DefinitionError("a pipeline needs at least one step under `steps`", document.place())
     takes = read_takes(document)
     expanded = expand(document)
-    order = _sorted(document, {name: _wires(name, entry, expanded, document) for name, entry in expanded.items()})
+    order = _sorted(
+        document, {name: _wires(name, entry, expanded, document) for name, entry in expanded.items()}
+    )
     steps: dict[str, Step] = {}
     for name, inputs in order.items():
         base, body, values = expanded[name]
@@ -131,7 +137,9 @@ def build(document: Document, catalogue: Catalogue) -> Pipeline:
 def _wires(name: str, entry: Any, steps: Mapping[str, Any], document: Document) -> dict[str, Input]:
     base, body, _ = entry
     return {
-        port: _reference(str(text), steps, document.place("steps", base, "inputs", port), f"step {name!r}, input {port!r}")
+        port: _reference(
+            str(text), steps, document.place("steps", base, "inputs", port), f"step {name!r}, input {port!r}"
+        )
         for port, text in (body.get("inputs") or {}).items()
     }
 
@@ -157,7 +165,9 @@ def _sorted(document: Document, wires: Mapping[str, dict[str, Input]]) -> dict[s
     def visit(name: str, above: tuple[str, ...]) -> None:
         if name in above:
             ring = " -> ".join((*above[above.index(name) :], name))
-            raise DefinitionError(f"the steps form a cycle: {ring}", document.place("steps", name.partition("[")[0]))
+            raise DefinitionError(
+                f"the steps form a cycle: {ring}", document.place("steps", name.partition("[")[0])
+            )
         if name not in done:
             for wired in wires[name].values():
                 for step in wired.steps:
@@ -187,14 +197,18 @@ class _Builder:
         ports = {port.name: port for port in node.ports}
         for port in inputs:
             if port not in ports:
-                raise self._error(f"node {node.name} has no input {port!r}: {nearest(port, ports)}", "inputs", port)
+                raise self._error(
+                    f"node {node.name} has no input {port!r}: {nearest(port, ports)}", "inputs", port
+                )
         for port in node.ports:
             if port.name in inputs:
                 self._check_type(port, inputs[port.name])
             elif not port.optional:
                 fitting = [s for s in self.steps if port.product in self._products(Input(s))]
                 hint = f"; a step that gives one: {', '.join(fitting)}" if fitting else ""
-                raise self._error(f"input {port.name!r} ({port.product.rsplit('.', 1)[1]}) is not wired{hint}", "inputs")
+                raise self._error(
+                    f"input {port.name!r} ({port.product.rsplit('.', 1)[1]}) is not wired{hint}", "inputs"
+                )
         domain, takes = self._domain(node, ports, inputs)
         units = takes if domain == "take" and node.over != "dataset" else ("",)
         params = {unit: self._parameters(node, unit) for unit in units}
@@ -204,7 +218,9 @@ class _Builder:
         )  # fmt: skip
 
     def _error(self, message: str, *keys: str | int) -> DefinitionError:
-        return DefinitionError(f"step {self.name!r}: {message}", self.document.place("steps", self.base, *keys))
+        return DefinitionError(
+            f"step {self.name!r}: {message}", self.document.place("steps", self.base, *keys)
+        )
 
     def _node(self) -> NodeSpec:
         name = self.body.get("node")
@@ -229,14 +245,26 @@ class _Builder:
         wanted = port.product.rsplit(".", 1)[1]
         if not given:
             source = self.catalogue.products[self.steps[wired.steps[0]].node.output]
-            raise self._error(f"step {wired.step!r} has no output {wired.part!r}: {nearest(wired.part, source.inside)}", "inputs", port.name)
+            raise self._error(
+                f"step {wired.step!r} has no output {wired.part!r}: {nearest(wired.part, source.inside)}",
+                "inputs",
+                port.name,
+            )
         if port.product not in given:
             inner = self.catalogue.products[given[0]].inside
-            parts = [name for name, kind in inner.items() if port.product in self.catalogue.products[kind].bases]
+            parts = [
+                name for name, kind in inner.items() if port.product in self.catalogue.products[kind].bases
+            ]
             hint = f": did you mean '{wired.step}.{parts[0]}'?" if parts else ""
-            raise self._error(f"input {port.name!r} must be {wanted}, but {wired.step!r} gives {given[0].rsplit('.', 1)[1]}{hint}", "inputs", port.name)
+            raise self._error(
+                f"input {port.name!r} must be {wanted}, but {wired.step!r} gives {given[0].rsplit('.', 1)[1]}{hint}",
+                "inputs",
+                port.name,
+            )
 
-    def _domain(self, node: NodeSpec, ports: Mapping[str, PortSpec], inputs: Mapping[str, Input]) -> tuple[Domain, tuple[str, ...]]:
+    def _domain(
+        self, node: NodeSpec, ports: Mapping[str, PortSpec], inputs: Mapping[str, Input]
+    ) -> tuple[Domain, tuple[str, ...]]:
         own = self.body.get("takes")
         takes = tuple(self.takes) if own is None else self._own_takes(own)
         domains: dict[str, Domain] = {}
@@ -244,9 +272,15 @@ class _Builder:
             source = self.steps[wired.steps[0]]
             domain: Domain = "single" if wired.item is not None else source.domain
             if wired.item is not None and wired.item not in source.units:
-                raise self._error(f"step {wired.step!r} has no item {wired.item!r}: {nearest(wired.item, source.units)}", "inputs", name)
+                raise self._error(
+                    f"step {wired.step!r} has no item {wired.item!r}: {nearest(wired.item, source.units)}",
+                    "inputs",
+                    name,
+                )
             if wired.gather and ports[name].many != "dataset":
-                raise self._error(f"input {name!r} takes one product; {wired.step} gathers several", "inputs", name)
+                raise self._error(
+                    f"input {name!r} takes one product; {wired.step} gathers several", "inputs", name
+                )
             if not wired.gather and domain != "single":
                 takes = tuple(take for take in takes if take in source.takes)
             domains[name] = domain
@@ -254,19 +288,33 @@ class _Builder:
                 "one": ("single", "take", "pair"), "pair": ("take", "single"), "dataset": ("take", "single"), "pairs": ("pair",)
             }  # fmt: skip
             if not wired.gather and domain not in wanted[ports[name].many]:
-                raise self._error(f"input {name!r} wants one product per {wanted[ports[name].many][0]}, but {wired.step!r} gives one per {domain}", "inputs", name)
+                raise self._error(
+                    f"input {name!r} wants one product per {wanted[ports[name].many][0]}, "
+                    f"but {wired.step!r} gives one per {domain}",
+                    "inputs",
+                    name,
+                )
         ones = {name: domain for name, domain in domains.items() if ports[name].many == "one"}
         if node.over == "pair":
             if "pair" not in domains.values() and "take" not in domains.values():
-                raise self._error(f"node {node.name} works on pairs of takes, but no input has takes", "inputs")
+                raise self._error(
+                    f"node {node.name} works on pairs of takes, but no input has takes", "inputs"
+                )
             return "pair", takes
         if node.over == "dataset":
             for name, domain in ones.items():
                 if domain != "single":
-                    raise self._error(f"input {name!r} wants one product, but {inputs[name].step!r} gives one per {domain}: choose one as '{inputs[name].step}/{takes[0] if takes else 'TAKE'}'", "inputs", name)
+                    raise self._error(
+                        f"input {name!r} wants one product, but {inputs[name].step!r} gives one per {domain}: "
+                        f"choose one, as '{inputs[name].step}/{takes[0] if takes else 'TAKE'}'",
+                        "inputs",
+                        name,
+                    )
             return ("take" if node.output_many == "dataset" else "single"), takes
         if "take" in ones.values() and "pair" in ones.values():
-            raise self._error("inputs per take and inputs per pair of takes cannot meet in one step", "inputs")
+            raise self._error(
+                "inputs per take and inputs per pair of takes cannot meet in one step", "inputs"
+            )
         if "pair" in ones.values():
             return "pair", takes
         if "take" in ones.values() or (not ones and node.over == "take"):
@@ -291,7 +339,10 @@ class _Builder:
         for name, value in given.items():
             where = self.document.place("steps", self.base, "params", name)
             if name not in specs:
-                raise DefinitionError(f"step {self.name!r}: node {node.name} has no parameter {name!r}: {nearest(name, specs)}", where)
+                raise DefinitionError(
+                    f"step {self.name!r}: node {node.name} has no parameter {name!r}: {nearest(name, specs)}",
+                    where,
+                )
             try:
                 values[name] = check(fill(value, variables, where), specs[name])
             except DefinitionError:
@@ -303,8 +354,14 @@ class _Builder:
         for name, spec in specs.items():
             if name not in values:
                 if spec.required:
-                    raise self._error(f"parameter {name!r} ({spec.about}) has no default and is not set", "params")
-                values[name] = float(spec.default) if spec.schema == {"type": "number"} and spec.default is not None else spec.default
+                    raise self._error(
+                        f"parameter {name!r} ({spec.about}) has no default and is not set", "params"
+                    )
+                values[name] = (
+                    float(spec.default)
+                    if spec.schema == {"type": "number"} and spec.default is not None
+                    else spec.default
+                )
         return dict(sorted(values.items()))
 
     def _existing(self, path: Any, name: str, where: Place) -> Any:
@@ -316,4 +373,8 @@ class _Builder:
         for base in (Path.cwd(), Path(self.document.file).resolve().parent):
             if (base / path).exists():
                 return str((base / path).resolve())
-        raise DefinitionError(f"step {self.name!r}: parameter {name!r}: no file or folder {path!r} (looked from {Path.cwd()} and beside the pipeline file)", where)
+        raise DefinitionError(
+            f"step {self.name!r}: parameter {name!r}: no file or folder {path!r} "
+            f"(looked from {Path.cwd()} and beside the pipeline file)",
+            where,
+        )

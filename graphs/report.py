@@ -31,7 +31,9 @@ class RunReport:
 
     def to_json(self) -> dict[str, Any]:
         """As `run --json` writes it."""
-        steps = {name: {**asdict(step), "seconds": round(step.seconds, 4)} for name, step in self.steps.items()}
+        steps = {
+            name: {**asdict(step), "seconds": round(step.seconds, 4)} for name, step in self.steps.items()
+        }
         return {"pipeline": self.pipeline, "seconds": round(self.seconds, 4), "steps": steps}
 
 

@@ -48,7 +48,9 @@ class Resolver:
         if port.many == "one":
             return [("", source.name, label if source.domain != "single" else "")]
         if port.many == "pair":
-            return [(take, source.name, take if source.domain == "take" else "") for take in label.split("/", 1)]
+            return [
+                (take, source.name, take if source.domain == "take" else "") for take in label.split("/", 1)
+            ]
         if port.many == "dataset":
             takes = source.takes if source.domain == "take" else step.takes
             return [(take, source.name, take if source.domain == "take" else "") for take in takes]
@@ -63,7 +65,9 @@ class Resolver:
                 found.append((port, "", []))
                 continue
             sources = self._sources(unit.step, port, wired, unit.label)
-            found.append((port, wired.part, [(label, self._lookup(step, inner)) for label, step, inner in sources]))
+            found.append(
+                (port, wired.part, [(label, self._lookup(step, inner)) for label, step, inner in sources])
+            )
         return found
 
     def key(self, unit: Unit) -> None:
@@ -88,21 +92,33 @@ class Resolver:
         parameters = unit.step.parameters(unit.label)
         if node.over not in ("frame", "view"):
             outputs = unit.step.takes if node.output_many == "dataset" else None
-            keys = [digest_bytes(unit.key, take.encode()) for take in outputs] if outputs is not None else [unit.key]
+            keys = (
+                [digest_bytes(unit.key, take.encode()) for take in outputs]
+                if outputs is not None
+                else [unit.key]
+            )
             return Work("whole", {}, [Item()], keys, tuple(feeds.values()), parameters, outputs)
         cut = [
-            SlicedPort(port.name, open_unit(self._url, manifests[0][1].name).contents, part, *self._cuts(unit, port))
+            SlicedPort(
+                port.name, open_unit(self._url, manifests[0][1].name).contents, part, *self._cuts(unit, port)
+            )
             for port, part, manifests in inputs
             if any(self._cuts(unit, port))
         ]
         frames = _length("frame", [p for p in cut if p.by_frame], node.name, required=True)
-        cameras = _length("camera", [p for p in cut if p.by_camera], node.name, True) if node.over == "view" else None
+        cameras = (
+            _length("camera", [p for p in cut if p.by_camera], node.name, True)
+            if node.over == "view"
+            else None
+        )
         names = {port.name: port for port in cut}
         whole = [(p.name, self._digests(part, found)) for p, part, found in inputs if p.name not in names]
         code = code_key(node, canonical(self._key_parameters(unit)) + (self._run if node.volatile else b""))
         keys = item_keys(code, cut, whole, frames, cameras, node.window)
         for name, port in names.items():
-            feeds[name] = Feed(**{**vars(feeds[name]), "by_frame": port.by_frame, "by_camera": port.by_camera})
+            feeds[name] = Feed(
+                **{**vars(feeds[name]), "by_frame": port.by_frame, "by_camera": port.by_camera}
+            )
         lengths = {"frame": frames} if cameras is None else {"frame": frames, "camera": cameras}
         items = _items(frames, cameras, node.window)
         return Work(node.over, lengths, items, keys, tuple(feeds.values()), parameters)
@@ -156,7 +172,9 @@ def _length(axis: str, ports: Sequence[SlicedPort], node: str, required: bool) -
         raise ValueError(f"node {node} works by {axis}, but no input has {axis}s")
     if len(set(lengths.values())) > 1:
         told = ", ".join(f"{name!r} has {length}" for name, length in lengths.items())
-        raise ValueError(f"node {node}: inputs must have the same number of {axis}s, but {told}: cut them to the same {axis}s")
+        raise ValueError(
+            f"node {node}: inputs must have the same number of {axis}s, but {told}: cut them to the same {axis}s"
+        )
     return next(iter(lengths.values()))
 
 
@@ -175,7 +193,9 @@ def file_digest(path: Path, index: Index) -> bytes:
     """
     if path.is_dir():
         inner = sorted(p for p in path.rglob("*") if p.is_file())
-        parts = [part for p in inner for part in (p.relative_to(path).as_posix().encode(), file_digest(p, index))]
+        parts = [
+            part for p in inner for part in (p.relative_to(path).as_posix().encode(), file_digest(p, index))
+        ]
         return digest_bytes(b"folder", *parts)
     state = os.stat(path)
     known = index.file_digest(str(path), state.st_size, state.st_mtime_ns)
@@ -190,5 +210,3 @@ def _read_digest(path: Path) -> bytes:
 
     with path.open("rb") as stream:
         return hashlib.file_digest(stream, lambda: hashlib.blake2b(digest_size=16)).digest()
-
-

@@ -19,14 +19,28 @@ class _Loader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[mi
 
 
 _Loader.yaml_implicit_resolvers = {
-    first: [(tag, pattern) for tag, pattern in resolvers if tag not in ("tag:yaml.org,2002:bool", "tag:yaml.org,2002:float", "tag:yaml.org,2002:timestamp", "tag:yaml.org,2002:int")]
+    first: [
+        (tag, pattern)
+        for tag, pattern in resolvers
+        if tag
+        not in (
+            "tag:yaml.org,2002:bool",
+            "tag:yaml.org,2002:float",
+            "tag:yaml.org,2002:timestamp",
+            "tag:yaml.org,2002:int",
+        )
+    ]
     for first, resolvers in yaml.SafeLoader.yaml_implicit_resolvers.items()
 }
-_Loader.add_implicit_resolver("tag:yaml.org,2002:bool", re.compile(r"^(?:true|True|TRUE|false|False|FALSE)$"), list("tTfF"))
+_Loader.add_implicit_resolver(
+    "tag:yaml.org,2002:bool", re.compile(r"^(?:true|True|TRUE|false|False|FALSE)$"), list("tTfF")
+)
 _Loader.add_implicit_resolver("tag:yaml.org,2002:int", re.compile(r"^[-+]?[0-9]+$"), list("-+0123456789"))
 _Loader.add_implicit_resolver(
     "tag:yaml.org,2002:float",
-    re.compile(r"^(?:[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?|[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN))$"),
+    re.compile(
+        r"^(?:[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?|[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN))$"
+    ),
     list("-+0123456789."),
 )
 
@@ -63,7 +77,9 @@ def parse_yaml(text: str, file: str) -> Source:
         mark = getattr(error, "problem_mark", None)
         line = mark.line + 1 if mark else 1
         problem = getattr(error, "problem", None) or str(error)
-        raise DefinitionError(f"this is not YAML: {problem} (is the file cut off or the indentation off?)", Place(file, line)) from error
+        raise DefinitionError(
+            f"this is not YAML: {problem} (is the file cut off or the indentation off?)", Place(file, line)
+        ) from error
     lines: dict[Keys, int] = {}
     if root is None:
         return Source(file, {}, {(): 1})
@@ -78,7 +94,9 @@ def _construct(node: Any, keys: Keys, lines: dict[Keys, int], file: str, loader:
         for key_node, value_node in node.value:
             key = _construct(key_node, (*keys, "?"), {}, file, loader)
             if not isinstance(key, str | int | float) or isinstance(key, bool):
-                raise DefinitionError(f"a key must be a word, got {key!r}", Place(file, key_node.start_mark.line + 1))
+                raise DefinitionError(
+                    f"a key must be a word, got {key!r}", Place(file, key_node.start_mark.line + 1)
+                )
             key = str(key)
             if key in found:
                 raise DefinitionError(f"key {key!r} stands twice", Place(file, key_node.start_mark.line + 1))
@@ -90,4 +108,6 @@ def _construct(node: Any, keys: Keys, lines: dict[Keys, int], file: str, loader:
     try:
         return loader.construct_object(node)
     except yaml.YAMLError as error:
-        raise DefinitionError(f"cannot read this value: {error}", Place(file, node.start_mark.line + 1)) from error
+        raise DefinitionError(
+            f"cannot read this value: {error}", Place(file, node.start_mark.line + 1)
+        ) from error

@@ -73,7 +73,9 @@ class NodeSpec:
     @property
     def fingerprint(self) -> str:
         """One hash of the node's code and all that it reaches."""
-        return hashlib.blake2b(json.dumps(self.functions, sort_keys=True).encode(), digest_size=16).hexdigest()
+        return hashlib.blake2b(
+            json.dumps(self.functions, sort_keys=True).encode(), digest_size=16
+        ).hexdigest()
 
     def load(self) -> Callable[..., Any]:
         """Import the node's function."""
@@ -141,8 +143,14 @@ def read_catalogue() -> Catalogue:
         catalogue = _discover(sources)
     kept.parent.mkdir(parents=True, exist_ok=True)
     beside = kept.with_suffix(f".{os.getpid()}")
-    beside.write_text(json.dumps({"nodes": [asdict(n) for n in catalogue.nodes.values()],
-                                  "products": [asdict(p) for p in catalogue.products.values()]}))
+    beside.write_text(
+        json.dumps(
+            {
+                "nodes": [asdict(n) for n in catalogue.nodes.values()],
+                "products": [asdict(p) for p in catalogue.products.values()],
+            }
+        )
+    )
     os.replace(beside, kept)
     return catalogue
 
@@ -159,7 +167,9 @@ def _packages() -> Iterator[tuple[str, str, dict[str, Path]]]:
         package = entry.value.partition(":")[0]
         spec = importlib.util.find_spec(package)
         if spec is None or spec.origin is None:
-            raise ImportError(f"plug-in {entry.name!r} ({GROUP}) names module {package!r}, which cannot be found: reinstall it")
+            raise ImportError(
+                f"plug-in {entry.name!r} ({GROUP}) names module {package!r}, which cannot be found: reinstall it"
+            )
         origin = Path(spec.origin)
         files = _modules(package, origin.parent) if spec.submodule_search_locations else {package: origin}
         yield f"{entry.name}.", package, files
@@ -181,12 +191,18 @@ def _discover(sources: list[tuple[str, str, dict[str, Path]]]) -> Catalogue:
     for prefix, package, files in sources:
         top = package.partition(".")[0]
         folder_of_top = _top_files(top) if top != "reperform" else files
-        tree = SourceTree(lambda name, known=folder_of_top | texts: known[name].read_text() if name in known else None)
+        tree = SourceTree(
+            lambda name, known=folder_of_top | texts: known[name].read_text() if name in known else None
+        )
         for module in files:
             if "@" not in files[module].read_text():
                 continue
             for function in _declared(importlib.import_module(module)):
-                name = f"{prefix}{function.__name__}" if prefix else f"{module.split('.')[2]}.{function.__name__}"
+                name = (
+                    f"{prefix}{function.__name__}"
+                    if prefix
+                    else f"{module.split('.')[2]}.{function.__name__}"
+                )
                 if name in nodes:
                     raise TypeError(f"two nodes are called {name!r}: in {nodes[name].module} and in {module}")
                 nodes[name] = _describe(name, function, tree, products)
@@ -197,18 +213,25 @@ def _top_files(top: str) -> dict[str, Path]:
     spec = importlib.util.find_spec(top)
     if spec is None or spec.origin is None:
         return {}
-    return _modules(top, Path(spec.origin).parent) if spec.submodule_search_locations else {top: Path(spec.origin)}
+    return (
+        _modules(top, Path(spec.origin).parent)
+        if spec.submodule_search_locations
+        else {top: Path(spec.origin)}
+    )
 
 
 def _declared(module: Any) -> list[Callable[..., Any]]:
     return [
         value
         for value in vars(module).values()
-        if getattr(value, "__module__", None) == module.__name__ and "__node__" in getattr(value, "__dict__", {})
+        if getattr(value, "__module__", None) == module.__name__
+        and "__node__" in getattr(value, "__dict__", {})
     ]
 
 
-def _describe(name: str, function: Callable[..., Any], tree: SourceTree, products: dict[str, ProductSpec]) -> NodeSpec:
+def _describe(
+    name: str, function: Callable[..., Any], tree: SourceTree, products: dict[str, ProductSpec]
+) -> NodeSpec:
     from reperform.nodes.declaration import read_signature
     from reperform.nodes.schema import parameter_spec, product_spec
 
@@ -246,5 +269,7 @@ def _from_json(data: dict[str, Any]) -> Catalogue:
     products = {}
     for raw in data["products"]:
         fields = {k: FieldSpec(tuple(f["axes"]), f["dtype"], f["unit"]) for k, f in raw["fields"].items()}
-        products[raw["name"]] = ProductSpec(raw["name"], raw["module"], raw["about"], fields, raw["inside"], tuple(raw["bases"]))
+        products[raw["name"]] = ProductSpec(
+            raw["name"], raw["module"], raw["about"], fields, raw["inside"], tuple(raw["bases"])
+        )
     return Catalogue(nodes, products)

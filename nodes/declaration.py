@@ -166,5 +166,7 @@ def _read_parameter(name: str, hint: Any, default: Any, who: str) -> Parameter:
         for kind in flat
     )
     if not simple:
-        raise TypeError(f"{who}: parameter {name!r} must be a bool, int, float, str, Literal, or a list of these")
+        raise TypeError(
+            f"{who}: parameter {name!r} must be a bool, int, float, str, Literal, or a list of these"
+        )
     return Parameter(name, hint, default, param, file)

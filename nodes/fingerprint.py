@@ -52,7 +52,10 @@ class SourceTree:
         text = "\n".join(ast.unparse(_Stripped().visit(_copy(statement))) for statement in statements)
         self._hashes[definition] = hashlib.blake2b(text.encode(), digest_size=8).hexdigest()
         self._needs[definition] = [
-            found for statement in statements for used in _uses(statement) if (found := self._resolve(module, statement, used))
+            found
+            for statement in statements
+            for used in _uses(statement)
+            if (found := self._resolve(module, statement, used))
         ]
         return True
 
@@ -78,7 +81,9 @@ class SourceTree:
             if name in module.definitions:
                 return module.name, name
             again = module.imports.get(name)
-            return self._follow(again, path[size + 1 :]) if again and again != tuple(path[: size + 1]) else None
+            return (
+                self._follow(again, path[size + 1 :]) if again and again != tuple(path[: size + 1]) else None
+            )
         return None
 
 
@@ -189,7 +194,11 @@ class _Stripped(ast.NodeTransformer):
     def _body(self, node: ast.FunctionDef | ast.ClassDef) -> ast.AST:
         self.generic_visit(node)
         first = node.body[0]
-        if isinstance(first, ast.Expr) and isinstance(first.value, ast.Constant) and isinstance(first.value.value, str):
+        if (
+            isinstance(first, ast.Expr)
+            and isinstance(first.value, ast.Constant)
+            and isinstance(first.value.value, str)
+        ):
             node.body = node.body[1:] or [ast.Pass()]
         return node
 
@@ -198,4 +207,3 @@ def _is_declaration(decorator: ast.expr) -> bool:
     called = decorator.func if isinstance(decorator, ast.Call) else decorator
     name = called.attr if isinstance(called, ast.Attribute) else getattr(called, "id", "")
     return name == "node"
-

@@ -95,7 +95,9 @@ def unflatten(kind: type, flat: Mapping[str, Any]) -> Any:
     hints = typing.get_type_hints(kind)
     return kind(
         *(
-            unflatten(hints[name], {k.split(".", 1)[1]: v for k, v in flat.items() if k.startswith(name + ".")})
+            unflatten(
+                hints[name], {k.split(".", 1)[1]: v for k, v in flat.items() if k.startswith(name + ".")}
+            )
             if is_product(hints[name])
             else flat[name]
             for name in kind._fields  # type: ignore[attr-defined]

@@ -19,7 +19,9 @@ class Ragged:
         self.arrays = tuple(np.asarray(array) for array in arrays)
         kinds = {(array.dtype, array.ndim) for array in self.arrays}
         if len(kinds) > 1:
-            raise ValueError(f"a ragged field needs one dtype and rank in all frames, got {sorted(map(str, kinds))}")
+            raise ValueError(
+                f"a ragged field needs one dtype and rank in all frames, got {sorted(map(str, kinds))}"
+            )
 
     def __len__(self) -> int:
         return len(self.arrays)

@@ -26,7 +26,12 @@ def json_schema(kind: Any, who: str = "parameter") -> dict[str, Any]:
     if origin is list or (origin is tuple and args[-1] is Ellipsis):
         return {"type": "array", "items": json_schema(args[0], who)}
     if origin is tuple:
-        return {"type": "array", "prefixItems": [json_schema(a, who) for a in args], "minItems": len(args), "maxItems": len(args)}
+        return {
+            "type": "array",
+            "prefixItems": [json_schema(a, who) for a in args],
+            "minItems": len(args),
+            "maxItems": len(args),
+        }
     if origin is dict and args[0] is str:
         return {"type": "object", "additionalProperties": json_schema(args[1], who)}
     raise TypeError(f"{who}: type {kind} is none that a pipeline file can hold")
@@ -63,7 +68,9 @@ def product_spec(kind: type, known: dict[str, ProductSpec]) -> str:
     name = qualified(kind)
     if name not in known:
         inside = {
-            field: product_spec(hint, known) for field, hint in typing.get_type_hints(kind).items() if is_product(hint)
+            field: product_spec(hint, known)
+            for field, hint in typing.get_type_hints(kind).items()
+            if is_product(hint)
         }
         fields = {k: FieldSpec(axes.names, axes.dtype, axes.unit) for k, axes in product_fields(kind).items()}
         bases = tuple(qualified(base) for base in kind.__mro__ if is_product(base))

@@ -4,9 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-
 # What zarr, its codecs and JSON raise on files that are gone, cut or changed.
-UNREADABLE = (FileNotFoundError, NotADirectoryError, ValueError, KeyError, IndexError, RuntimeError, TypeError)
+UNREADABLE = (
+    FileNotFoundError,
+    NotADirectoryError,
+    ValueError,
+    KeyError,
+    IndexError,
+    RuntimeError,
+    TypeError,
+)
 
 
 class DamagedResult(RuntimeError):

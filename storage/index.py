@@ -91,7 +91,9 @@ class Index:
 
     def manifest(self, key: bytes) -> Manifest | None:
         """The complete output under a key, if all of it is there."""
-        row = self._db.execute("SELECT key, name, node, summary FROM manifests WHERE key=?", (key,)).fetchone()
+        row = self._db.execute(
+            "SELECT key, name, node, summary FROM manifests WHERE key=?", (key,)
+        ).fetchone()
         return Manifest(row[0], row[1], row[2], json.loads(row[3])) if row else None
 
     def results(self, keys: Sequence[bytes]) -> dict[bytes, Result]:
@@ -116,26 +118,41 @@ class Index:
 
     def segments_of(self, manifest: bytes) -> list[str]:
         """Names of the segments that a manifest's items lie in."""
-        return [r[0] for r in self._db.execute("SELECT segment FROM manifest_segments WHERE manifest=?", (manifest,))]
+        return [
+            r[0]
+            for r in self._db.execute("SELECT segment FROM manifest_segments WHERE manifest=?", (manifest,))
+        ]
 
     def seconds_per_item(self, node: str) -> float | None:
         """Mean time of one item of a node, as measured so far."""
-        total, rows = self._db.execute("SELECT SUM(seconds), SUM(rows) FROM segments WHERE node=?", (node,)).fetchone()
+        total, rows = self._db.execute(
+            "SELECT SUM(seconds), SUM(rows) FROM segments WHERE node=?", (node,)
+        ).fetchone()
         return total / rows if rows else None
 
     def bytes_per_item(self, node: str) -> float | None:
         """Mean size of one item of a node before compression, as measured so far."""
-        total, rows = self._db.execute("SELECT SUM(bytes), SUM(rows) FROM segments WHERE node=?", (node,)).fetchone()
+        total, rows = self._db.execute(
+            "SELECT SUM(bytes), SUM(rows) FROM segments WHERE node=?", (node,)
+        ).fetchone()
         return total / rows if rows else None
 
     def all_segments(self) -> list[Segment]:
         """Every segment."""
-        return [Segment(*r) for r in self._db.execute("SELECT name, node, rows, bytes, seconds, stamp FROM segments")]
+        return [
+            Segment(*r)
+            for r in self._db.execute("SELECT name, node, rows, bytes, seconds, stamp FROM segments")
+        ]
 
     def all_manifests(self) -> list[tuple[Manifest, float]]:
         """Every manifest with the time it was last asked for."""
         sql = "SELECT key, name, node, summary, used FROM manifests"
         return [(Manifest(r[0], r[1], r[2], json.loads(r[3])), r[4]) for r in self._db.execute(sql)]
+
+    def created(self, segment: str) -> float:
+        """When a segment was written."""
+        row = self._db.execute("SELECT created FROM segments WHERE name=?", (segment,)).fetchone()
+        return float(row[0]) if row else 0.0
 
     def rows_of(self, segment: str) -> dict[int, tuple[bytes, bytes]]:
         """row -> (key, packed digests) of the results that lie in a segment."""
@@ -149,10 +166,12 @@ class Index:
         now = time.time()
         with self._transaction():
             self._db.executemany(
-                "INSERT OR REPLACE INTO segments VALUES (?,?,?,?,?,?,?)", [(*s, now) for s in records.segments]
+                "INSERT OR REPLACE INTO segments VALUES (?,?,?,?,?,?,?)",
+                [(*s, now) for s in records.segments],
             )
             self._db.executemany(
-                "INSERT OR REPLACE INTO results VALUES (?,?,?,?)", [(k, *r) for k, r in records.results.items()]
+                "INSERT OR REPLACE INTO results VALUES (?,?,?,?)",
+                [(k, *r) for k, r in records.results.items()],
             )
             self._db.executemany("DELETE FROM claims WHERE key=?", [(k,) for k in records.results])
             for manifest, segments in records.manifests:
@@ -161,7 +180,8 @@ class Index:
                     (manifest.key, manifest.name, manifest.node, json.dumps(manifest.summary), now, now),
                 )
                 self._db.executemany(
-                    "INSERT OR IGNORE INTO manifest_segments VALUES (?,?)", [(manifest.key, s) for s in segments]
+                    "INSERT OR IGNORE INTO manifest_segments VALUES (?,?)",
+                    [(manifest.key, s) for s in segments],
                 )
 
     def drop(self, segment: str, rows: Sequence[int] | None = None) -> int:
@@ -175,7 +195,8 @@ class Index:
                 sql = f"DELETE FROM results WHERE segment=? AND row IN ({marks})"
                 dropped = self._db.execute(sql, (segment, *rows)).rowcount
             self._db.execute(
-                "DELETE FROM manifests WHERE key IN (SELECT manifest FROM manifest_segments WHERE segment=?)", (segment,)
+                "DELETE FROM manifests WHERE key IN (SELECT manifest FROM manifest_segments WHERE segment=?)",
+                (segment,),
             )
             self._db.execute("DELETE FROM manifest_segments WHERE segment=?", (segment,))
         return dropped
@@ -191,13 +212,17 @@ class Index:
         self._db.execute("UPDATE segments SET stamp=? WHERE name=?", (stamp, segment))
 
     def touch(self, keys: Sequence[bytes]) -> None:
-        """Record that manifests were asked for now (collection spares what was used lately)."""
+        """Record, to the hour, that manifests were asked for (collection spares what was used lately)."""
+        now = time.time()
         with self._transaction():
-            self._db.executemany("UPDATE manifests SET used=? WHERE key=?", [(time.time(), k) for k in keys])
+            sql = "UPDATE manifests SET used=? WHERE key=? AND used<?"
+            self._db.executemany(sql, [(now, key, now - 3600) for key in keys])
 
     # -- claims -------------------------------------------------------------------------------------------------
 
-    def claim(self, keys: Sequence[bytes], owner: str, lapsed: Mapping[str, bool]) -> tuple[set[bytes], dict[bytes, Result]]:
+    def claim(
+        self, keys: Sequence[bytes], owner: str, lapsed: Mapping[str, bool]
+    ) -> tuple[set[bytes], dict[bytes, Result]]:
         """Claim keys for computation. Returns those that are now the owner's, and results that exist by now.
 
         A key claimed by another owner is in neither; the claim of an owner for whom `lapsed` says True is taken over.
@@ -212,7 +237,9 @@ class Index:
                 sql = f"SELECT key, owner FROM claims WHERE key IN ({','.join('?' * len(some))})"
                 held |= dict(self._db.execute(sql, some).fetchall())
             mine = {k for k in open_keys if k not in held or held[k] == owner or lapsed.get(held[k], False)}
-            self._db.executemany("INSERT OR REPLACE INTO claims VALUES (?,?,?)", [(k, owner, now) for k in mine])
+            self._db.executemany(
+                "INSERT OR REPLACE INTO claims VALUES (?,?,?)", [(k, owner, now) for k in mine]
+            )
         return mine, done
 
     def claim_owners(self) -> dict[str, float]:

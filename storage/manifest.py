@@ -65,7 +65,13 @@ class Contents:
             axes = {name: tuple(value) for name, value in header["axes"].items()}
             tables = {name: stored[f"table/{name}"] for name in axes}
             return Contents(
-                header["layout"], axes, header["lengths"], tables, header["segments"], stored["segment"], stored["row"]
+                header["layout"],
+                axes,
+                header["lengths"],
+                tables,
+                header["segments"],
+                stored["segment"],
+                stored["row"],
             )
 
     def summary(self) -> dict[str, Any]:
@@ -74,7 +80,12 @@ class Contents:
             name: digest_bytes(repr(table.shape).encode(), np.ascontiguousarray(table).tobytes()).hex()
             for name, table in self.tables.items()
         }
-        return {"fields": fields, "lengths": dict(self.lengths), "items": len(self.row), "layout": self.layout}
+        return {
+            "fields": fields,
+            "lengths": dict(self.lengths),
+            "items": len(self.row),
+            "layout": self.layout,
+        }
 
 
 class StoredUnit:
@@ -95,10 +106,16 @@ class StoredUnit:
         if contents.layout == "view" and per_camera:
             count = contents.lengths["camera"]
             wanted = range(count) if camera is None else [camera]
-            views = self._read(field, [f * count + c for f in frames for c in wanted], [(f, c) for f in frames for c in wanted])
-            return views if camera is not None else [
-                np.stack(views[k * count : (k + 1) * count]) for k in range(len(frames))
-            ]
+            views = self._read(
+                field,
+                [f * count + c for f in frames for c in wanted],
+                [(f, c) for f in frames for c in wanted],
+            )
+            return (
+                views
+                if camera is not None
+                else [np.stack(views[k * count : (k + 1) * count]) for k in range(len(frames))]
+            )
         step = contents.lengths["camera"] if contents.layout == "view" else 1
         items = [f * step for f in frames]
         if not per_camera:
@@ -112,10 +129,7 @@ class StoredUnit:
         contents = self.contents
         if "camera" not in contents.axes[field]:
             return self._read(field, [0], [()])[0]
-        if contents.layout == "view":
-            cameras = range(contents.lengths["camera"]) if camera is None else [camera]
-            rows = self._read(field, list(cameras), [(c,) for c in cameras])
-        elif contents.layout == "whole":
+        if contents.layout == "view" or contents.layout == "whole":
             cameras = range(contents.lengths["camera"]) if camera is None else [camera]
             rows = self._read(field, list(cameras), [(c,) for c in cameras])
         else:
@@ -197,6 +211,8 @@ def verify_row(reader: SegmentReader, tables: Mapping[str, np.ndarray], row: int
             pairs = [(reader.whole(field), table)]
         else:
             pairs = list(zip(reader.rows(field, range(len(table))), table, strict=True))
-        if not all(np.array_equal(digest_table(array, digests.ndim - 1), digests) for array, digests in pairs):
+        if not all(
+            np.array_equal(digest_table(array, digests.ndim - 1), digests) for array, digests in pairs
+        ):
             return False
     return True

@@ -104,7 +104,9 @@ class SegmentReader:
         entry = self._layout[field]
         if entry.get("text"):
             raise ValueError(f"the shape of text field {field!r} is known only once read")
-        return tuple(entry["shapes"][row]) if entry["kind"] == "ragged" else tuple(self._array(field).shape[1:])
+        return (
+            tuple(entry["shapes"][row]) if entry["kind"] == "ragged" else tuple(self._array(field).shape[1:])
+        )
 
     def whole_shape(self, field: str) -> tuple[int, ...]:
         """Shape of a field stored whole or in rows of one shape."""
@@ -126,7 +128,8 @@ class SegmentReader:
             sizes = [int(np.prod(shape, dtype=int)) for shape in entry["shapes"]]
             ends = np.cumsum(sizes)
             return [
-                _decode(array[int(ends[k]) - sizes[k] : int(ends[k])].reshape(entry["shapes"][k]), entry) for k in rows
+                _decode(array[int(ends[k]) - sizes[k] : int(ends[k])].reshape(entry["shapes"][k]), entry)
+                for k in rows
             ]
         out: list[np.ndarray] = []
         for start, stop in _runs(rows):

@@ -134,6 +134,23 @@ class Shelf:
         else:
             path.unlink(missing_ok=True)
 
+    def changed(self, kind: str, name: str) -> float:
+        """When a segment or manifest was last written."""
+        if self.folder is None:
+            fs, root = self.filesystem
+            files = fs.find(f"{root}/{kind}/{name}")
+            return max((fs.modified(path).timestamp() for path in files), default=0.0)
+        return (self.folder / kind / name).stat().st_mtime
+
+    def copy_to(self, other: Shelf, kind: str, name: str) -> None:
+        """Copy a segment or a manifest to another shelf, file by file."""
+        here, root = self.filesystem
+        there, base = other.filesystem
+        for path in here.find(f"{root}/{kind}/{name}"):
+            target = f"{base}{path[len(root) :]}"
+            there.makedirs(target.rpartition("/")[0], exist_ok=True)
+            there.pipe_file(target, here.cat_file(path))
+
     def names(self, kind: str) -> list[str]:
         """Names of all segments (or manifests) that lie here, unfinished ones too."""
         if self.folder is None:
@@ -147,7 +164,8 @@ class Shelf:
         nodes = [path for path in place.iterdir() if path.is_dir()]
         unfinished = [path.name for path in nodes if path.name.startswith(".")]
         return sorted(
-            unfinished + [f"{n.name}/{p.name}" for n in nodes if not n.name.startswith(".") for p in n.iterdir()]
+            unfinished
+            + [f"{n.name}/{p.name}" for n in nodes if not n.name.startswith(".") for p in n.iterdir()]
         )
 
 

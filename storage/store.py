@@ -33,7 +33,10 @@ class Store:
             self.shelf = open_shelf(self.url)
             self.index = self._open_index()
         except OSError as error:
-            raise StoreError(error.errno, f"store {self.url}: cannot open: {error.strerror or error}: check the path and its permissions") from error
+            raise StoreError(
+                error.errno,
+                f"store {self.url}: cannot open: {error.strerror or error}: check the path and its permissions",
+            ) from error
         self.owner = f"{socket.gethostname()}:{os.getpid()}:{uuid.uuid4().hex[:8]}"
         self._beating: threading.Event | None = None
 
@@ -105,7 +108,11 @@ class Store:
             reader = SegmentReader(self.shelf.zarr_store, name)
         except UNREADABLE:
             return None
-        return [row for row, (_, tables) in sorted(rows.items()) if not _is_intact(reader, unpack_tables(tables), row)]
+        return [
+            row
+            for row, (_, tables) in sorted(rows.items())
+            if not _is_intact(reader, unpack_tables(tables), row)
+        ]
 
     def forget(self, segment: str, rows: Sequence[int] | None) -> str:
         """Drop damaged results from the index; returns what to tell the user."""

@@ -73,8 +73,11 @@ class Progress:
         self.close()
 
     def start(self, step: str, total: int) -> None:
-        """A step begins, with so many items (those in the cache included)."""
+        """A step has so many items (more), those in the cache included; the takes of a step arrive one by one."""
         with self._lock:
+            if step in self._steps:
+                self._steps[step].total += total
+                return
             self._steps[step] = _Step(total, self._clock())
             if self._bars is not None:
                 self._add_bar(step)
@@ -128,7 +131,7 @@ class Progress:
             for name in self._steps:
                 self._add_bar(name)
         if state.task is not None:
-            self._bars.update(state.task, completed=state.done, pace=_pace(state, now))
+            self._bars.update(state.task, completed=state.done, total=state.total, pace=_pace(state, now))
 
     def _add_bar(self, step: str) -> None:
         state = self._steps[step]
