@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Annotated
 
-import cv2
 import numpy as np
 
 from reperform.nodes.declaration import Param, node
@@ -26,7 +25,7 @@ def background_difference(
     softness: Annotated[float, Param("deviation", 0.1, 50, "half width of the uncertain range")] = 3.0,
     noise: Annotated[float, Param("1/255", 0.5, 50, "deviation assumed at least")] = 3.0,
     shadow: Annotated[float, Param("1", 0, 1, "darkest shadow, as a share of the light; 1: none")] = 0.45,
-    hole: Annotated[float, Param("1", 0, 0.1, "share of the picture up to which a hole is filled")] = 3e-4,
+    hole: Annotated[float, Param("1", 0, 0.1, "share of the picture up to which a hole is filled")] = 5e-4,
     band: Annotated[float, Param("px", 0.5, 10, "half width of the soft edge, at width 960")] = 1.5,
     smallest: Annotated[float, Param("1", 0, 0.5, "least share of the picture a performer covers")] = 2e-4,
 ) -> Mattes:
@@ -51,8 +50,6 @@ def background_difference(
     deviation = np.maximum(plate.deviation, np.float32(noise))
     difference = plate_difference(image, plate.mean, deviation, shadow, 0.7 * scale)
     rough = np.clip((difference - threshold) / (2 * softness) + 0.5, 0, 1)
-    disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * round(scale) + 1, 2 * round(scale) + 1))
-    mask = cv2.morphologyEx((rough > 0.5).astype(np.uint8), cv2.MORPH_OPEN, disc) > 0
-    performer = performer_component(mask, round(3 * scale), int(smallest * mask.size))
-    alpha = soft_edge(image, rough, performer, plate.mean, int(hole * mask.size), band * scale, scale)
+    performer = performer_component(rough > 0.5, round(3 * scale), int(smallest * rough.size))
+    alpha = soft_edge(image, rough, performer, plate.mean, int(hole * rough.size), band * scale, scale)
     return Mattes(alpha, footage.fps)

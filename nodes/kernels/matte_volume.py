@@ -7,6 +7,21 @@ import numpy as np
 from reperform.nodes.kernels.camera import centre
 
 
+def refuse_mismatch(who: str, shape: tuple[int, ...], image_size: np.ndarray, names: np.ndarray) -> None:
+    """Raise ValueError where pictures (camera, y, x, ...) and a calibration cannot belong together."""
+    if shape[0] != len(names):
+        raise ValueError(
+            f"{who}: as many cameras as pictures are needed, got {shape[0]} pictures and {len(names)} cameras "
+            f"({', '.join(map(str, names))}): choose the same cameras for footage and calibration"
+        )
+    for name, (width, height) in zip(names, image_size, strict=True):
+        if (height, width) != shape[1:3]:
+            raise ValueError(
+                f"{who}: the calibration of camera {name} is for pictures of {width}x{height} px, got "
+                f"{shape[2]}x{shape[1]} px: scale the pictures or take the calibration that belongs to them"
+            )
+
+
 def matte_boxes(alpha: np.ndarray) -> np.ndarray:
     """Bounding boxes (camera, 4) of what is more covered than not: left, top, right, bottom px; nan if none."""
     boxes = np.full((len(alpha), 4), np.nan)

@@ -5,6 +5,9 @@ from __future__ import annotations
 import cv2
 import numpy as np
 
+# Saturation (1 - min / max of r, g, b) of the set from which on a shadow is told by its colour.
+_SATURATED = 0.5
+
 
 def plate_difference(
     image: np.ndarray, mean: np.ndarray, deviation: np.ndarray, shadow: float, blur: float
@@ -12,9 +15,10 @@ def plate_difference(
     """Difference (y, x) float32 of a picture from the plate in deviations, with shadows forgiven.
 
     image (y, x, 3) uint8; mean, deviation (y, x, 3) float32. With E = mean / deviation and I = image / deviation,
-    the brightness a = <I, E> / |E|^2 minimises |I - a E|; colour = |I - a E| and light = |a - 1| |E|. A pixel with
-    shadow <= a <= 1 is allowed to be dark: its light counts only as far as a lies under `shadow`, and its colour is
-    taken in the deviation of the shadow itself. difference = sqrt(colour^2 + light^2 / 4).
+    the brightness a = <I, E> / |E|^2 minimises |I - a E|; colour = |I - a E| and light = |1 - a| |E|, of which a
+    shadow that leaves at least the share f of the light is forgiven: light counts from f down only. f is `shadow`
+    where the set has a strong colour of its own and 1 where it is grey, since grey cloth on a grey wall has the
+    colour of a shadow: f = 1 - (1 - shadow) min(1, saturation / 0.5). difference = sqrt(colour^2 + light^2).
 
     Source: Horprasert, Harwood and Davis 1999, ICCV.
     """
@@ -24,10 +28,7 @@ def plate_difference(
     brightness = (seen * steady).sum(axis=2) / strength
     off = seen - brightness[..., None] * steady
     colour = np.sqrt((off * off).sum(axis=2))
-    excess = np.where(
-        brightness > 1,
-        brightness - 1,
-        np.where(brightness < shadow, (shadow - brightness) / max(shadow, 0.1), 0),
-    )
-    light = excess * np.sqrt(strength)
-    return np.sqrt(colour**2 + 0.25 * light**2)
+    saturation = 1 - mean.min(axis=2) / np.maximum(mean.max(axis=2), 1.0)
+    forgiven = 1 - (1 - shadow) * np.minimum(saturation / _SATURATED, 1)
+    light = np.maximum(brightness - 1, 0) + np.maximum(forgiven - brightness, 0)
+    return np.sqrt(colour**2 + strength * light**2)
