@@ -14,7 +14,7 @@ from reperform.nodes.kernels.vertex_colour import vertex_colour
 from reperform.nodes.kernels.view_dependent import view_dependent_colour
 
 # Below this reliability a pixel fades into the vertex colours.
-FILL = 0.08
+FILL = 0.01
 
 Picture = tuple[np.ndarray, np.ndarray, tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]]
 
@@ -38,7 +38,7 @@ def capture_surface(
     gains: np.ndarray | None = None,
     erode: float = 1.5,
     feather: float = 6.0,
-    bias: float = 0.01,
+    bias: float = 0.003,
 ) -> CapturedSurface:
     """Prepare a captured frame for texturing.
 
@@ -65,11 +65,12 @@ def textured(
     towards: np.ndarray,
     *,
     sharpness: float = 4.0,
-    bias: float = 0.01,
-) -> np.ndarray:
-    """Colours (P, 3) float32 of points given by triangle (P,) and barycentrics (P, 3), seen along `towards`.
+    bias: float = 0.003,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Colours (P, 3) float32 and reliability (P,) of points given by triangle (P,) and barycentrics (P, 3).
 
-    With r = min(1, reliability / 0.08): r view-dependent colour + (1 - r) vertex colour.
+    towards (P, 3): unit directions to the virtual eye, in the space of the capture. With r = min(1,
+    reliability / 0.01): r view-dependent colour + (1 - r) vertex colour.
     """
     points = interpolate(surface.vertices, surface.faces, ids, barycentric)
     normals = interpolate(surface.normals, surface.faces, ids, barycentric)
@@ -78,10 +79,8 @@ def textured(
         points, normals, towards, surface.views, sharpness=sharpness, bias=bias, gains=surface.gains
     )
     share = np.minimum(1, reliability / FILL)[:, None]
-    filled: np.ndarray = share * colour + (1 - share) * interpolate(
-        surface.colours, surface.faces, ids, barycentric
-    )
-    return filled.astype(np.float32)
+    filled = share * colour + (1 - share) * interpolate(surface.colours, surface.faces, ids, barycentric)
+    return filled.astype(np.float32), reliability
 
 
 def directions_to(eye: np.ndarray, points: np.ndarray) -> np.ndarray:

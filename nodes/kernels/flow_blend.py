@@ -7,7 +7,7 @@ from typing import Literal
 import cv2
 import numpy as np
 
-Flow = Literal["dis", "farneback"]
+Flow = Literal["dis", "farneback", "none"]
 
 
 def flow_blend(
@@ -15,6 +15,7 @@ def flow_blend(
     second: np.ndarray,
     weight: float,
     inside: np.ndarray,
+    confidence: np.ndarray | None = None,
     *,
     method: Flow = "dis",
     tolerance: float = 1.5,
@@ -23,11 +24,14 @@ def flow_blend(
     """The picture (H, W, 3) float32 that shows `weight` of the first and 1 - weight of the second.
 
     first, second (H, W, 3) float32, 0..255, of the same proxy from the same viewpoint; inside (H, W) bool:
-    where they show it. With s = 1 - weight and a the flow (px) from first to second, defined on the blended
-    picture: out(x) = (1 - s) first(x - s a(x)) + s second(x + (1 - s) a(x)). So s = 0 and s = 1 return the
-    inputs exactly. a(x) is found from the two-way flows F12, F21 by a(x) <- (1 - s) F12(x - s a) - s F21(x +
-    (1 - s) a), iterated, and damped by exp(-(e / tolerance)^2), e the forward-backward error |F12(x) + F21(x
-    + F12)| px, and where it exceeds `reach` px: there the blend falls back to a cross-fade.
+    where they show it; confidence (2, H, W): how far each is to be trusted (default: alike). With
+    s = 1 - weight and a the flow (px) from first to second, defined on the blended picture:
+    out(x) = (1 - q) first(x - s a(x)) + q second(x + (1 - s) a(x)), where q = s, or with confidences c1, c2
+    q = s c2 / ((1 - s) c1 + s c2), so that what only one of them knows comes from that one. So s = 0 and
+    s = 1 return the inputs exactly. a(x) is found from the two-way flows F12, F21 by a(x) <- (1 - s) F12(x -
+    s a) - s F21(x + (1 - s) a), iterated, and damped by exp(-(e / tolerance)^2), e the forward-backward
+    error |F12(x) + F21(x + F12)| px, and where it exceeds `reach` px: there the blend falls back to a
+    cross-fade.
 
     Source: 004 eqs 5.2-5.3 (after Eisemann et al. 2008, "Floating textures"); DIS: Kroeger et al. 2016, ECCV;
     Farneback 2003, SCIA. Departure: as printed the flow is defined on an end point and both weights are on
@@ -38,8 +42,12 @@ def flow_blend(
         return first.astype(np.float32, copy=True)
     if share >= 1:
         return second.astype(np.float32, copy=True)
-    if min(inside.shape) < 16:
-        return (weight * first + share * second).astype(np.float32)
+    mix = np.full((*inside.shape, 1), share, np.float32)
+    if confidence is not None:
+        one, two = weight * (confidence[0] + 1e-3), share * (confidence[1] + 1e-3)
+        mix[..., 0] = two / (one + two)
+    if method == "none" or min(inside.shape) < 16:
+        return ((1 - mix) * first + mix * second).astype(np.float32)
     first, second = _extend(first, inside), _extend(second, inside)
     one, two = _guide(first), _guide(second)
     there, back = _flow(one, two, method), _flow(two, one, method)
@@ -48,9 +56,7 @@ def flow_blend(
     middle = (1 - share) * forward - share * backward
     for _ in range(3):
         middle = (1 - share) * _at(forward, -share * middle) - share * _at(backward, (1 - share) * middle)
-    blended: np.ndarray = (1 - share) * _at(first, -share * middle) + share * _at(
-        second, (1 - share) * middle
-    )
+    blended: np.ndarray = (1 - mix) * _at(first, -share * middle) + mix * _at(second, (1 - share) * middle)
     return blended
 
 

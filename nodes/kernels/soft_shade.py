@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import cv2
 import numpy as np
 
 from reperform.nodes.kernels.camera import look_at
@@ -47,13 +46,7 @@ def _lit(
     total = np.zeros(len(points))
     for dx in (-1.2, 0.0, 1.2):
         for dy in (-1.2, 0.0, 1.2):
-            near = cv2.remap(
-                depth,
-                (column + dx).astype(np.float32).reshape(-1, 1),
-                (row + dy).astype(np.float32).reshape(-1, 1),
-                cv2.INTER_NEAREST,
-                borderMode=cv2.BORDER_CONSTANT,
-                borderValue=float("inf"),
-            )[:, 0]
-            total += lifted[:, 2] <= near + bias
+            x = np.rint(column + dx).astype(int).clip(0, depth.shape[1] - 1)
+            y = np.rint(row + dy).astype(int).clip(0, depth.shape[0] - 1)
+            total += lifted[:, 2] <= depth[y, x] + bias
     return total / 9

@@ -10,6 +10,9 @@ import numpy as np
 from reperform.nodes.kernels.camera import project
 from reperform.nodes.kernels.rasterise import rasterise
 
+# Trust just inside the eroded rim: used where no other camera sees a point.
+RIM = 0.02
+
 
 class SourceView(NamedTuple):
     """One camera's picture of the performer, cropped around the mesh."""
@@ -33,14 +36,14 @@ def source_view(
     *,
     erode: float = 1.5,
     feather: float = 6.0,
-    step: float = 0.05,
 ) -> SourceView | None:
     """Crop one picture around the mesh and grade its pixels; None where the mesh is out of the picture.
 
     image (H, W, 3) uint8, alpha (H, W) uint8; camera: matrix, rotation, translation, distortion. A pixel is
-    unsafe where the mesh is not seen, where alpha < 0.9, or beside a jump of depth > `step` m (there the
-    picture may show the other side of the jump). With d the distance in px to the nearest unsafe pixel:
-    trust = smoothstep((d - erode) / feather).
+    unsafe where the mesh is not seen, where alpha < 0.9, or beside a jump of depth (there the picture may
+    show the other side of it): where the second difference of depth along x or y exceeds 2 cm + two pixels'
+    footprint, depth / focal length. With d the distance in px to the nearest unsafe pixel:
+    trust = 0 up to d = erode, then 0.02 + 0.98 smoothstep((d - erode) / feather).
 
     Source: Debevec, Taylor and Malik 1996, SIGGRAPH, section 4 (visibility, blending near borders);
     Buehler et al. 2001, SIGGRAPH, section 3 (feathering at boundaries).
@@ -57,11 +60,11 @@ def source_view(
         return None
     window = slice(low[1], high[1]), slice(low[0], high[0])
     _, _, buffer = rasterise(pixels - low, depth, faces, high[1] - low[1], high[0] - low[0])
-    safe = np.isfinite(buffer) & (alpha[window] >= 0.9 * 255) & ~_jumps(buffer, step)
+    safe = np.isfinite(buffer) & (alpha[window] >= 0.9 * 255) & ~_jumps(buffer, float(camera[0][0, 0]))
     # Beyond the picture's border nothing is known.
     distance = cv2.distanceTransform(np.pad(safe, 1).astype(np.uint8), cv2.DIST_L2, 5)[1:-1, 1:-1]
     ramp = np.clip((distance - erode) / feather, 0, 1)
-    trust = (ramp * ramp * (3 - 2 * ramp)).astype(np.float32)
+    trust = np.where(distance > erode, RIM + (1 - RIM) * ramp * ramp * (3 - 2 * ramp), 0).astype(np.float32)
     return SourceView(
         np.ascontiguousarray(image[window]),
         buffer,
@@ -71,12 +74,13 @@ def source_view(
     )
 
 
-def _jumps(depth: np.ndarray, step: float) -> np.ndarray:
-    """Pixels where the depth of a 3x3 neighbourhood spans more than `step`; unseen neighbours do not
-    count."""
+def _jumps(depth: np.ndarray, focal: float) -> np.ndarray:
+    """Pixels at a step of depth; a steady slope is none, and an unseen neighbour does not count."""
     finite = np.isfinite(depth)
-    kernel = np.ones((3, 3), np.uint8)
-    farthest = cv2.dilate(np.where(finite, depth, np.float32(-1e9)), kernel)
-    nearest = cv2.erode(np.where(finite, depth, np.float32(1e9)), kernel)
-    jumps: np.ndarray = finite & (farthest - nearest > step)
+    padded = np.pad(np.where(finite, depth, np.nan), 1, constant_values=np.nan)
+    middle = padded[1:-1, 1:-1]
+    bend_x = np.abs(padded[1:-1, :-2] - 2 * middle + padded[1:-1, 2:])
+    bend_y = np.abs(padded[:-2, 1:-1] - 2 * middle + padded[2:, 1:-1])
+    limit = 0.02 + 2 * middle / focal
+    jumps: np.ndarray = (bend_x > limit) | (bend_y > limit)
     return jumps

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import scipy.sparse
 
 from reperform.nodes.kernels.laplacian import vertex_adjacency
 from reperform.nodes.kernels.source_view import SourceView
@@ -18,30 +17,29 @@ def vertex_colour(
     normals: np.ndarray,
     views: Sequence[SourceView],
     *,
-    bias: float = 0.01,
+    bias: float = 0.003,
     gains: np.ndarray | None = None,
-    passes: int = 40,
+    passes: int = 15,
 ) -> np.ndarray:
     """Colours (V, 3) float32, 0..255: what the cameras show, spread along the surface to what they do not.
 
-    With r the reliability (saturating at 0.2) and A the mean over neighbours, `passes` times:
-    colour <- r seen + (1 - r) A colour, over neighbours that have a colour. Vertices never reached (pieces
-    that no camera sees) take the mean colour of the rest, mid-grey where there is none.
+    With r the reliability (clipped to 0.05 .. 0.25 and scaled to 0 .. 1) and A the mean over neighbours,
+    `passes` times: colour <- r seen + (1 - r) A colour, over neighbours that have a colour. Vertices never
+    reached (pieces that no camera sees) take the mean colour of the rest, mid-grey where there is none.
     """
     seen, reliability = view_dependent_colour(vertices, normals, None, views, bias=bias, gains=gains)
-    keep = np.clip(reliability / 0.2, 0, 1)[:, None].astype(np.float64)
-    neighbours = scipy.sparse.csr_matrix(vertex_adjacency(faces, len(vertices)), dtype=np.float64)
-    colour = seen.astype(np.float64) * (keep > 0)
-    known = (keep[:, 0] > 0).astype(np.float64)
+    keep = np.clip((reliability - 0.05) / 0.2, 0, 1).astype(np.float64)
+    # Rows whose colour can change; last column: whether a vertex has a colour yet.
+    open_rows = np.flatnonzero(keep < 1)
+    rows = vertex_adjacency(faces, len(vertices))[open_rows].astype(np.float64)
+    state = np.concatenate([seen * (keep > 0)[:, None], (keep > 0)[:, None]], axis=1).astype(np.float64)
+    own, fixed = keep[open_rows, None], seen[open_rows]
     for _ in range(passes):
-        weight = neighbours @ known
-        spread = (neighbours @ (colour * known[:, None])) / np.maximum(weight, 1e-12)[:, None]
-        reached = weight > 0
-        mix = np.where(reached[:, None], keep * seen + (1 - keep) * spread, colour)
-        colour = mix
-        known = np.maximum(known, reached)
-        if known.all() and (keep >= 1).all():
-            break
-    unknown = known == 0
-    colour[unknown] = colour[~unknown].mean(axis=0) if (~unknown).any() else 128.0
-    return colour.astype(np.float32)
+        spread = rows @ np.concatenate([state[:, :3] * state[:, 3:], state[:, 3:]], axis=1)
+        reached = spread[:, 3] > 0
+        mean = spread[:, :3] / np.maximum(spread[:, 3:], 1.0)
+        state[open_rows[reached], :3] = (own * fixed + (1 - own) * mean)[reached]
+        state[open_rows[reached], 3] = 1
+    known = state[:, 3] > 0
+    state[~known, :3] = state[known, :3].mean(axis=0) if known.any() else 128.0
+    return state[:, :3].astype(np.float32)

@@ -21,7 +21,7 @@ def view_dependent_colour(
     views: Sequence[SourceView],
     *,
     sharpness: float = 4.0,
-    bias: float = 0.01,
+    bias: float = 0.003,
     gains: np.ndarray | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Blend what the views show at points (P, 3) with normals (P, 3), seen along `towards` (P, 3).
@@ -120,13 +120,17 @@ def _accumulate(
             continue
         column, row = int(px), int(py)
         fx, fy = px - column, py - row
-        # The farthest of the four depths: a point on a slope is not behind itself.
-        behind = -np.inf
+        # Between the four depths, so that a point on a slope is not behind itself.
+        share, seen = 0.0, 0.0
         for dr in range(2):
             for dc in range(2):
-                d = depth[row + dr, column + dc]
-                if d < np.inf and d > behind:
-                    behind = d
+                if depth[row + dr, column + dc] < np.inf:
+                    part = (fy if dr else 1 - fy) * (fx if dc else 1 - fx)
+                    share += part
+                    seen += part * depth[row + dr, column + dc]
+        if not share > 0:
+            continue
+        behind = seen / share
         visible = min(1.0, 2.0 - (far - behind) / bias)
         if not visible > 0:
             continue

@@ -45,7 +45,7 @@ def free_viewpoint(
     sharpness: Sharpness = 4.0,
     erode: Erode = 1.5,
     feather: Feather = 6.0,
-    bias: Bias = 0.01,
+    bias: Bias = 0.003,
     samples: Samples = 3,
     brightness: Brightness = 0.75,
     shadow: Shadow = 0.5,
@@ -120,5 +120,5 @@ def view_of(
     hits = surface_hits(*project(surface.vertices, *pose), surface.faces, height, width, samples)
     points = interpolate(surface.vertices, surface.faces, hits.ids, hits.barycentric)
     towards = directions_to(centre(pose[1], pose[2]), points)
-    colour = textured(surface, hits.ids, hits.barycentric, towards, sharpness=sharpness, bias=bias)
+    colour, _ = textured(surface, hits.ids, hits.barycentric, towards, sharpness=sharpness, bias=bias)
     return compose(background, hits.y, hits.x, colour, hits.coverage)

@@ -35,7 +35,7 @@ def held_out(
     sharpness: Sharpness = 4.0,
     erode: Erode = 1.5,
     feather: Feather = 6.0,
-    bias: Bias = 0.01,
+    bias: Bias = 0.003,
     samples: Samples = 3,
     background: Annotated[float, Param("1/255", 0, 255, "grey behind the performer")] = 128.0,
 ) -> Film:

@@ -15,7 +15,7 @@ Sharpness = Annotated[
 ]
 Erode = Annotated[float, Param("px", 0, 20, "rim of the performer in the source pictures that is never used")]
 Feather = Annotated[float, Param("px", 0.5, 60, "width over which a source picture fades in from its rim")]
-Bias = Annotated[float, Param("m", 0.001, 0.1, "how far behind a depth map a point still counts as seen")]
+Bias = Annotated[float, Param("m", 0.0005, 0.1, "how far behind a depth map a point still counts as seen")]
 Samples = Annotated[int, Param("1", 1, 5, "points per pixel and axis for antialiased outlines")]
 Brightness = Annotated[float, Param("1", 0, 1, "of the stage behind the performer")]
 Shadow = Annotated[float, Param("1", 0, 1, "darkness of the shadow on the floor; 0 = none")]

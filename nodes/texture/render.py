@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Annotated, Literal
+from typing import Annotated
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from reperform.nodes.kernels.captured_surface import (
     directions_to,
     textured,
 )
-from reperform.nodes.kernels.flow_blend import flow_blend
+from reperform.nodes.kernels.flow_blend import Flow, flow_blend
 from reperform.nodes.kernels.ground_plane import Placement, apply
 from reperform.nodes.kernels.rasterise import interpolate
 from reperform.nodes.kernels.surface_hits import SurfaceHits, surface_hits
@@ -49,14 +49,14 @@ def render(
     cameras: Dataset[Cameras],
     *,
     alignment: Annotated[
-        Literal["dis", "farneback", "none"],
+        Flow,
         Param("1", about="optical flow between the sources; none = cross-fade"),
     ] = "dis",
     views: Annotated[int, Param("cameras", 1, 64, "of each source, the nearest in direction")] = 5,
     sharpness: Sharpness = 4.0,
     erode: Erode = 1.5,
     feather: Feather = 6.0,
-    bias: Bias = 0.01,
+    bias: Bias = 0.003,
     samples: Samples = 3,
     brightness: Brightness = 0.75,
     shadow: Shadow = 0.5,
@@ -83,16 +83,16 @@ def render(
     hits = surface_hits(*project(vertices, *pose), faces, height, width, samples)
     points = interpolate(vertices, faces, hits.ids, hits.barycentric)
     towards = directions_to(centre(camera.rotation, camera.translation), points)
-    colours, weights = [], []
+    renders, weights = [], []
     for take, frame, weight, yaw in sources(animation.provenance):
         captured = _captured(meshes, take, frame, faces)
         inward = apply(towards, Placement(-yaw, np.zeros(2)))
         chosen = _nearest_cameras(cameras[take], captured, inward, views)
         shots = _pictures(footage[take], mattes[take], cameras[take], frame, chosen)
         surface = capture_surface(captured, faces, shots, erode=erode, feather=feather, bias=bias)
-        colours.append(textured(surface, hits.ids, hits.barycentric, inward, sharpness=sharpness, bias=bias))
+        renders.append(textured(surface, hits.ids, hits.barycentric, inward, sharpness=sharpness, bias=bias))
         weights.append(weight)
-    colour = colours[0] if len(colours) == 1 else _blend(hits, colours, weights, alignment)
+    colour = renders[0][0] if len(renders) == 1 else _blend(hits, renders, weights, alignment)
     return Film(*compose(stage, hits.y, hits.x, colour, hits.coverage), animation.mesh.fps)
 
 
@@ -153,19 +153,18 @@ def _pictures(
         yield np.asarray(footage.images[frame, k]), np.asarray(mattes.alpha[frame, k]), calibration(rig, k)
 
 
-def _blend(hits: SurfaceHits, colours: list[np.ndarray], weights: list[float], alignment: str) -> np.ndarray:
-    """Colours (P, 3) of two sources as one."""
-    if alignment == "none" or not len(hits.y):
-        return np.asarray(weights[0] * colours[0] + weights[1] * colours[1])
+def _blend(
+    hits: SurfaceHits, renders: list[tuple[np.ndarray, np.ndarray]], weights: list[float], alignment: Flow
+) -> np.ndarray:
+    """Colours (P, 3) of two sources, each colours (P, 3) and reliability (P,), as one."""
+    if not len(hits.y):
+        return renders[0][0]
     margin = 8
     rows, columns = hits.y - hits.y.min() + margin, hits.x - hits.x.min() + margin
     shape = int(rows.max()) + margin + 1, int(columns.max()) + margin + 1
     inside = np.zeros(shape, bool)
     inside[rows, columns] = True
-    layers = []
-    for colour in colours:
-        layer = np.zeros((*shape, 3), np.float32)
-        layer[rows, columns] = colour
-        layers.append(layer)
-    method: Literal["dis", "farneback"] = "farneback" if alignment == "farneback" else "dis"
-    return flow_blend(layers[0], layers[1], weights[0], inside, method=method)[rows, columns]
+    layers, confidence = np.zeros((2, *shape, 3), np.float32), np.zeros((2, *shape), np.float32)
+    for k, (colour, reliability) in enumerate(renders):
+        layers[k, rows, columns], confidence[k, rows, columns] = colour, reliability
+    return flow_blend(layers[0], layers[1], weights[0], inside, confidence, method=alignment)[rows, columns]

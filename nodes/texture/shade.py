@@ -55,7 +55,7 @@ def shade(
         raise ValueError(f"texture.shade: colour must be red, green, blue in 0..1, got {list(colour)}")
     if colours is not None and len(colours.colour) != len(vertices):
         raise ValueError(
-            f"texture.shade: colours must be of the mesh's {len(vertices)} vertices, got {len(colours.colour)}: "
+            f"texture.shade: colours must be of the {len(vertices)} vertices, got {len(colours.colour)}: "
             "wire the paint of this aligned mesh"
         )
     width, height = camera.image_size.tolist()

@@ -51,7 +51,7 @@ def turntable(
     sharpness: Sharpness = 4.0,
     erode: Erode = 1.5,
     feather: Feather = 6.0,
-    bias: Bias = 0.01,
+    bias: Bias = 0.003,
     samples: Samples = 3,
     brightness: Brightness = 0.75,
     shadow: Shadow = 0.5,
