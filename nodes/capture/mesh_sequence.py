@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import zipfile
 from typing import Annotated
 
 import numpy as np
@@ -36,11 +37,11 @@ def mesh_sequence(
     """
     who = f"capture.mesh_sequence: {file}"
     try:
-        with np.load(file, allow_pickle=False) as archive:
+        with open(file, "rb") as stream, np.load(stream, allow_pickle=False) as archive:
             arrays = {name: archive[name] for name in (vertices, faces) if name in archive.files}
             rate = fps if fps > 0 or "fps" not in archive.files else float(archive["fps"])
             names = archive.files
-    except (OSError, ValueError, EOFError, AttributeError) as error:
+    except (OSError, ValueError, TypeError, EOFError, zipfile.BadZipFile) as error:
         raise ValueError(f"{who} cannot be read as a NumPy archive: {error}") from error
     for name in (vertices, faces):
         if name not in arrays:

@@ -30,10 +30,10 @@ def ground_tracks(graph: MotionGraph, meshes: Dataset[MeshSequence], who: str) -
     Raises ValueError where the graph was made of other takes.
     """
     tracks = []
-    for take, frames in zip(np.asarray(graph.takes), np.asarray(graph.frames), strict=True):
+    for take, frames in zip(map(str, np.asarray(graph.takes)), np.asarray(graph.frames), strict=True):
         if take not in meshes:
             raise ValueError(f"{who}: the graph has take {take!r}, the meshes have {', '.join(meshes)}")
-        vertices = np.asarray(meshes[str(take)].vertices)
+        vertices = np.asarray(meshes[take].vertices)
         if len(vertices) != frames:
             raise ValueError(
                 f"{who}: take {take!r} has {frames} frames in the graph and {len(vertices)} in the meshes"

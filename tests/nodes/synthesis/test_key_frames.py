@@ -1,0 +1,107 @@
+from collections.abc import Mapping
+
+import numpy as np
+import pytest
+
+from reperform.nodes.products.mesh import MeshSequence
+from reperform.nodes.products.motion import MotionGraph
+from reperform.nodes.synthesis.animate import animate
+from reperform.nodes.synthesis.key_frames import key_frames
+
+
+@pytest.mark.parametrize(("distance", "duration"), [(4.0, 5.0), (6.0, 5.8), (7.5, 9.0)])
+def test_targets_are_met_and_what_is_promised_is_what_is_played(
+    graph: MotionGraph, meshes: Mapping[str, MeshSequence], distance: float, duration: float
+) -> None:
+    path = key_frames(graph, meshes, start="slow:3", end="turn:40", distance=distance, duration=duration)
+    assert abs(path.distance[0] - distance) <= 0.05
+    assert abs(path.duration[0] - duration) <= 0.08 + 1e-6
+    assert path.cost >= path.bound
+    assert path.cost - path.bound < 0.05
+    played = animate(path, meshes)
+    track = played.mesh.vertices[:, :, [0, 2]].astype(float).mean(axis=1)
+    assert np.linalg.norm(np.diff(track, axis=0), axis=1).sum() == pytest.approx(path.distance[0], abs=1e-4)
+    assert len(track) / 25 == pytest.approx(path.duration[0])
+    assert np.linalg.norm(track[-1] - track[0]) == pytest.approx(path.displacement, abs=1e-4)
+
+
+def test_key_frames_appear_unblended_and_in_order(
+    graph: MotionGraph, meshes: Mapping[str, MeshSequence]
+) -> None:
+    keys = [("slow", 3), ("fast", 30), ("turn", 30), ("slow", 60)]
+    texts = [f"{take}:{frame}" for take, frame in keys]
+    path = key_frames(graph, meshes, start=texts[0], via=(texts[1], texts[2]), end=texts[3])
+    source = path.provenance
+    whole = source.weight[:, 0] == 1.0
+    shown = [
+        int(
+            np.flatnonzero(
+                whole & (source.takes[source.take[:, 0]] == take) & (source.source_frame[:, 0] == frame)
+            )[0]
+        )
+        for take, frame in keys
+    ]
+    assert shown == sorted(shown)
+    assert shown[0] == 0
+    assert shown[-1] == len(whole) - 1
+    assert path.cost == pytest.approx(path.bound)
+    assert np.isnan(path.distance[1])
+
+
+def test_weights_trade_time_against_distance(graph: MotionGraph, meshes: Mapping[str, MeshSequence]) -> None:
+    wide = {"distance_tolerance": 3.0, "duration_tolerance": 3.0}
+    ends = {"start": "slow:3", "end": "turn:40", "distance": 5.3, "duration": 4.1}
+    far = key_frames(graph, meshes, **ends, **wide, distance_weight=1000.0, duration_weight=0.0)
+    timely = key_frames(graph, meshes, **ends, **wide, distance_weight=0.0, duration_weight=1000.0)
+    assert abs(far.distance[0] - 5.3) < abs(timely.distance[0] - 5.3)
+    assert abs(timely.duration[0] - 4.1) < abs(far.duration[0] - 4.1)
+
+
+def test_an_infeasible_target_is_named_with_the_nearest(
+    graph: MotionGraph, meshes: Mapping[str, MeshSequence]
+) -> None:
+    ends = {"start": "slow:3", "end": "turn:40", "distance": 20.0, "duration": 4.0}
+    with pytest.raises(ValueError, match=r"nearest that can be met is [\d.]+ m in [\d.]+ s"):
+        key_frames(graph, meshes, **ends)
+    path = key_frames(graph, meshes, **ends, nearest=True)
+    assert abs(path.distance[0] - 20.0) > 0.05 or abs(path.duration[0] - 4.0) > 0.08
+
+
+@pytest.mark.parametrize(
+    ("keys", "message"),
+    [
+        (("slow", "turn:3"), "must read TAKE:FRAME"),
+        (("run:3", "turn:3"), "slow, fast, turn"),
+        (("slow:70", "turn:3"), "frames 0 .. 69"),
+        (("slow:x", "turn:3"), "whole frame number"),
+    ],
+)
+def test_key_frames_that_do_not_exist_are_refused(
+    graph: MotionGraph, meshes: Mapping[str, MeshSequence], keys: tuple[str, str], message: str
+) -> None:
+    with pytest.raises(ValueError, match=message):
+        key_frames(graph, meshes, start=keys[0], end=keys[1])
+
+
+def test_key_frames_that_cannot_be_joined_are_named(
+    graph: MotionGraph, meshes: Mapping[str, MeshSequence]
+) -> None:
+    kept = np.asarray(graph.source) == np.asarray(graph.target)
+    alone = graph._replace(
+        **{
+            name: np.asarray(getattr(graph, name))[kept]
+            for name in (
+                "source",
+                "target",
+                "source_frame",
+                "target_frame",
+                "length",
+                "cost",
+                "yaw",
+                "offset",
+                "core",
+            )
+        }
+    )
+    with pytest.raises(ValueError, match="no walk through the graph shows slow:3, fast:9"):
+        key_frames(alone, meshes, start="slow:3", end="fast:9")
