@@ -216,7 +216,7 @@ def _whole_fields(output: Any, batch: Batch) -> tuple[dict[str, Any], dict[str, 
         else:
             array = _checked(value, spec, list(spec.axes), name, batch.node)
             # rows are looked up by frame (or camera); a product without frames keeps its field whole
-            arrays[name] = list(array) if spec.items else array
+            arrays[name] = [np.asarray(row) for row in array] if spec.items else array
         inner = len(spec.items) - 1
         tables[name] = (
             _stacked([digest_table(row, inner) for row in arrays[name]], inner)
