@@ -13,8 +13,9 @@ import importlib.util
 import inspect
 import json
 import os
+import re
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -22,6 +23,14 @@ from typing import Any
 from reperform.nodes.fingerprint import SourceTree
 
 GROUP = "reperform.nodes"
+# Prefix of node names, package with nodes, files of its top-level package by module.
+Package = tuple[str, str, dict[str, Path]]
+# What turns a signature into a description: where one of these changes, all nodes are read anew.
+LAW = ("catalogue", "declaration", "fingerprint", "product", "schema")
+KEPT = 16
+_IMPORT = re.compile(
+    r"^[ \t]*(?:from[ \t]+([\w.]+)[ \t]+import[ \t]+(\([^)]*\)|[^\n#]+)|import[ \t]+([^\n#]+))", re.MULTILINE
+)
 
 
 @dataclass(frozen=True)
@@ -127,32 +136,53 @@ class Catalogue:
 
 
 def read_catalogue() -> Catalogue:
-    """The catalogue of this installation: from the cache where no source changed, else read anew."""
-    sources = list(_packages())
-    state = hashlib.blake2b(repr(sys.version_info[:3]).encode(), digest_size=16)
-    for prefix, package, files in sources:
-        state.update(f"{prefix}={package}".encode())
-        for module, path in (files if not prefix else _top_files(package.partition(".")[0])).items():
-            state.update(module.encode())
-            state.update(path.read_bytes())
-    kept = cache_folder() / f"catalogue-{state.hexdigest()}.json"
+    """The catalogue of this installation. What no source changed comes from the cache, the rest is read anew."""
+    packages = list(_packages())
+    texts = {module: path.read_bytes() for _, _, files in packages for module, path in files.items()}
+    kept = cache_folder() / f"catalogue-{_digest(*_state(packages, texts))}.json"
     try:
         return _from_json(json.loads(kept.read_text()))
     except (FileNotFoundError, ValueError, KeyError, TypeError):
         # absent or unreadable: it is only a copy of what the sources say
-        catalogue = _discover(sources)
+        described = _discover(packages, texts, _known(kept.parent))
+    catalogue = _from_json(json.loads(json.dumps(described)))
     kept.parent.mkdir(parents=True, exist_ok=True)
     beside = kept.with_suffix(f".{os.getpid()}")
-    beside.write_text(
-        json.dumps(
-            {
-                "nodes": [asdict(n) for n in catalogue.nodes.values()],
-                "products": [asdict(p) for p in catalogue.products.values()],
-            }
-        )
-    )
+    beside.write_text(json.dumps(described))
     os.replace(beside, kept)
+    for old in _newest(kept.parent)[KEPT:]:
+        old.unlink(missing_ok=True)
     return catalogue
+
+
+def _state(packages: list[Package], texts: Mapping[str, bytes]) -> Iterator[bytes]:
+    yield repr(sys.version_info[:3]).encode()
+    for prefix, package, files in packages:
+        yield f"{prefix}={package}".encode()
+        for module in files:
+            yield from (module.encode(), texts[module])
+
+
+def _digest(*parts: bytes) -> str:
+    state = hashlib.blake2b(digest_size=16)
+    for part in parts:
+        state.update(len(part).to_bytes(8, "little") + part)
+    return state.hexdigest()
+
+
+def _newest(folder: Path) -> list[Path]:
+    return sorted(folder.glob("catalogue-*.json"), key=lambda path: path.stat().st_mtime, reverse=True)
+
+
+def _known(folder: Path) -> dict[str, Any]:
+    """Descriptions of modules in the newest catalogues kept, by digest of all that they stand on."""
+    known: dict[str, Any] = {}
+    for path in _newest(folder)[:4]:
+        try:
+            known = json.loads(path.read_text())["modules"] | known
+        except (FileNotFoundError, ValueError, KeyError, TypeError):
+            continue
+    return known
 
 
 def cache_folder() -> Path:
@@ -160,18 +190,18 @@ def cache_folder() -> Path:
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "reperform"
 
 
-def _packages() -> Iterator[tuple[str, str, dict[str, Path]]]:
-    """(prefix of node names, package, module -> file): the own stations, then plug-ins by entry point."""
+def _packages() -> Iterator[Package]:
+    """The own stations, then plug-ins by entry point."""
     yield "", "reperform.nodes", _modules("reperform.nodes", Path(__file__).parent)
     for entry in sorted(importlib.metadata.entry_points(group=GROUP), key=lambda e: (e.name, e.value)):
         package = entry.value.partition(":")[0]
-        spec = importlib.util.find_spec(package)
+        spec = importlib.util.find_spec(package.partition(".")[0])
         if spec is None or spec.origin is None:
             raise ImportError(
                 f"plug-in {entry.name!r} ({GROUP}) names module {package!r}, which cannot be found: reinstall it"
             )
-        origin = Path(spec.origin)
-        files = _modules(package, origin.parent) if spec.submodule_search_locations else {package: origin}
+        origin, top = Path(spec.origin), package.partition(".")[0]
+        files = _modules(top, origin.parent) if spec.submodule_search_locations else {top: origin}
         yield f"{entry.name}.", package, files
 
 
@@ -184,40 +214,64 @@ def _modules(package: str, folder: Path) -> dict[str, Path]:
     return found
 
 
-def _discover(sources: list[tuple[str, str, dict[str, Path]]]) -> Catalogue:
-    nodes: dict[str, NodeSpec] = {}
-    products: dict[str, ProductSpec] = {}
-    texts: dict[str, Path] = {module: path for _, _, files in sources for module, path in files.items()}
-    for prefix, package, files in sources:
-        top = package.partition(".")[0]
-        folder_of_top = _top_files(top) if top != "reperform" else files
-        tree = SourceTree(
-            lambda name, known=folder_of_top | texts: known[name].read_text() if name in known else None
-        )
+def _discover(
+    packages: list[Package], texts: Mapping[str, bytes], known: Mapping[str, Any]
+) -> dict[str, dict[str, Any]]:
+    """Descriptions of all modules that declare nodes, by digest of each and of all that it imports."""
+    inits = {module for _, _, files in packages for module, path in files.items() if path.stem == "__init__"}
+    tree = SourceTree(lambda name: texts[name].decode() if name in texts else None, inits)
+    needs = {module: _imported(module, text, texts, module in inits) for module, text in texts.items()}
+    law = [texts[f"reperform.nodes.{name}"] for name in LAW]
+    found: dict[str, Any] = {}
+    for prefix, package, files in packages:
         for module in files:
-            if "@" not in files[module].read_text():
+            if b"@" not in texts[module] or not f"{module}.".startswith(f"{package}."):
                 continue
-            for function in _declared(importlib.import_module(module)):
-                name = (
-                    f"{prefix}{function.__name__}"
-                    if prefix
-                    else f"{module.split('.')[2]}.{function.__name__}"
-                )
-                if name in nodes:
-                    raise TypeError(f"two nodes are called {name!r}: in {nodes[name].module} and in {module}")
-                nodes[name] = _describe(name, function, tree, products)
-    return Catalogue(dict(sorted(nodes.items())), products)
+            closure = _closure(module, needs)
+            digest = _digest(
+                prefix.encode(),
+                module.encode(),
+                *law,
+                *(part for m in closure for part in (m.encode(), texts[m])),
+            )
+            found[digest] = known[digest] if digest in known else _read_module(prefix, module, tree)
+    return {"modules": found}
 
 
-def _top_files(top: str) -> dict[str, Path]:
-    spec = importlib.util.find_spec(top)
-    if spec is None or spec.origin is None:
-        return {}
-    return (
-        _modules(top, Path(spec.origin).parent)
-        if spec.submodule_search_locations
-        else {top: Path(spec.origin)}
-    )
+def _imported(module: str, text: bytes, known: Mapping[str, Any], is_package: bool) -> set[str]:
+    """Modules among the known that a module imports anywhere (or seems to: one too many does no harm)."""
+    names: set[str] = set()
+    for match in _IMPORT.finditer(text.decode()):
+        source, things = match[1] or "", match[2] or match[3] or ""
+        level = len(source) - len(source.lstrip("."))
+        if level:
+            parts = module.split(".")
+            parents = parts[: len(parts) - level + is_package]
+            source = ".".join([*parents, *filter(None, [source[level:]])])
+        words = [part.split()[0] for part in things.strip("()").split(",") if part.split()]
+        names |= {source} | {f"{source}.{word}" if source else word for word in words}
+    return names & known.keys()
+
+
+def _closure(module: str, needs: Mapping[str, set[str]]) -> list[str]:
+    reached: set[str] = set()
+    todo = [module]
+    while todo:
+        name = todo.pop()
+        if name not in reached:
+            reached.add(name)
+            todo += needs[name]
+    return sorted(reached)
+
+
+def _read_module(prefix: str, module: str, tree: SourceTree) -> dict[str, Any]:
+    """Import one module and describe its nodes and their products."""
+    nodes: list[dict[str, Any]] = []
+    products: dict[str, ProductSpec] = {}
+    for function in _declared(importlib.import_module(module)):
+        station = prefix or f"{module.split('.')[2]}."
+        nodes.append(asdict(_describe(f"{station}{function.__name__}", function, tree, products)))
+    return {"nodes": nodes, "products": [asdict(product) for product in products.values()]}
 
 
 def _declared(module: Any) -> list[Callable[..., Any]]:
@@ -260,16 +314,31 @@ def _describe(
 
 
 def _from_json(data: dict[str, Any]) -> Catalogue:
-    nodes = {}
-    for raw in data["nodes"]:
-        raw["window"] = tuple(raw["window"])
-        raw["ports"] = tuple(PortSpec(**port) for port in raw["ports"])
-        raw["parameters"] = tuple(ParameterSpec(**parameter) for parameter in raw["parameters"])
-        nodes[raw["name"]] = NodeSpec(**raw)
-    products = {}
-    for raw in data["products"]:
-        fields = {k: FieldSpec(tuple(f["axes"]), f["dtype"], f["unit"]) for k, f in raw["fields"].items()}
-        products[raw["name"]] = ProductSpec(
-            raw["name"], raw["module"], raw["about"], fields, raw["inside"], tuple(raw["bases"])
-        )
-    return Catalogue(nodes, products)
+    nodes: dict[str, NodeSpec] = {}
+    products: dict[str, ProductSpec] = {}
+    for entry in data["modules"].values():
+        for raw in entry["nodes"]:
+            if raw["name"] in nodes:
+                first = nodes[raw["name"]].module
+                raise NameError(f"two nodes are called {raw['name']!r}: in {first} and in {raw['module']}")
+            nodes[raw["name"]] = _node(raw)
+        for raw in entry["products"]:
+            if raw["name"] not in products:
+                products[raw["name"]] = _product(raw)
+    return Catalogue(dict(sorted(nodes.items())), products)
+
+
+def _node(raw: Mapping[str, Any]) -> NodeSpec:
+    return NodeSpec(
+        **{
+            **raw,
+            "window": tuple(raw["window"]),
+            "ports": tuple(PortSpec(**port) for port in raw["ports"]),
+            "parameters": tuple(ParameterSpec(**parameter) for parameter in raw["parameters"]),
+        }
+    )
+
+
+def _product(raw: Mapping[str, Any]) -> ProductSpec:
+    fields = {k: FieldSpec(tuple(f["axes"]), f["dtype"], f["unit"]) for k, f in raw["fields"].items()}
+    return ProductSpec(raw["name"], raw["module"], raw["about"], fields, raw["inside"], tuple(raw["bases"]))

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import ast
 import hashlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 
 Definition = tuple[str, str]  # module, name
 
@@ -16,10 +16,11 @@ class SourceTree:
     """The modules of one package, parsed when first needed.
 
     read: source text of a module of the package, or None where there is no such module.
+    packages: modules that are packages (an `__init__.py`), from where relative imports start inside.
     """
 
-    def __init__(self, read: Callable[[str], str | None]) -> None:
-        self._read = read
+    def __init__(self, read: Callable[[str], str | None], packages: Collection[str] = ()) -> None:
+        self._read, self._packages = read, packages
         self._modules: dict[str, _Module | None] = {}
         self._hashes: dict[Definition, str] = {}
         self._needs: dict[Definition, list[Definition]] = {}
@@ -38,7 +39,9 @@ class SourceTree:
     def _module(self, name: str) -> _Module | None:
         if name not in self._modules:
             source = self._read(name)
-            self._modules[name] = None if source is None else _Module(name, ast.parse(source))
+            self._modules[name] = (
+                None if source is None else _Module(name, ast.parse(source), name in self._packages)
+            )
         return self._modules[name]
 
     def _examine(self, definition: Definition) -> bool:
@@ -62,7 +65,7 @@ class SourceTree:
     def _resolve(self, module: _Module, statement: ast.stmt, used: tuple[str, ...]) -> Definition | None:
         """Where a (dotted) name used in a statement is defined, if in this package."""
         head, *rest = used
-        local = dict(_imports(statement, module.name))
+        local = dict(_imports(statement, module.base))
         if head not in local and head in module.definitions:
             return module.name, head
         target = local.get(head) or module.imports.get(head)
@@ -88,15 +91,17 @@ class SourceTree:
 
 
 class _Module:
-    def __init__(self, name: str, tree: ast.Module) -> None:
+    def __init__(self, name: str, tree: ast.Module, is_package: bool) -> None:
         self.name = name
+        # where relative imports start
+        self.base = tuple(name.split(".") if is_package else name.split(".")[:-1])
         self.definitions: dict[str, list[ast.stmt]] = {}
         self.imports: dict[str, tuple[str, ...]] = {}
         for statement in _top_level(tree.body):
             for defined in _defines(statement):
                 self.definitions.setdefault(defined, []).append(statement)
             if isinstance(statement, ast.Import | ast.ImportFrom):
-                self.imports |= dict(_imports(statement, name))
+                self.imports |= dict(_imports(statement, self.base))
 
 
 def _top_level(body: list[ast.stmt]) -> Iterator[ast.stmt]:
@@ -121,7 +126,7 @@ def _defines(statement: ast.stmt) -> Iterator[str]:
             yield from (n.id for n in ast.walk(target) if isinstance(n, ast.Name))
 
 
-def _imports(statement: ast.stmt, module: str) -> Iterator[tuple[str, tuple[str, ...]]]:
+def _imports(statement: ast.stmt, base: tuple[str, ...]) -> Iterator[tuple[str, tuple[str, ...]]]:
     """Names bound by imports anywhere in a statement: local name -> dotted target."""
     for inner in ast.walk(statement):
         if isinstance(inner, ast.Import):
@@ -129,8 +134,8 @@ def _imports(statement: ast.stmt, module: str) -> Iterator[tuple[str, tuple[str,
                 whole = tuple(alias.name.split("."))
                 yield (alias.asname, whole) if alias.asname else (whole[0], whole[:1])
         elif isinstance(inner, ast.ImportFrom):
-            base = module.split(".")[: -inner.level] if inner.level else []
-            source = (*base, *(inner.module.split(".") if inner.module else ()))
+            above = base[: len(base) - inner.level + 1] if inner.level else ()
+            source = (*above, *(inner.module.split(".") if inner.module else ()))
             for alias in inner.names:
                 yield alias.asname or alias.name, (*source, alias.name)
 
