@@ -32,9 +32,10 @@ def digest_array(array: np.ndarray) -> bytes:
 
 def digest_table(array: np.ndarray, item_axes: int) -> np.ndarray:
     """Digests of every slice along the leading item axes: uint8, shape (*lengths of these axes, 16)."""
+    array = np.asarray(array)
     lead = array.shape[:item_axes]
     slices = array.reshape(-1, *array.shape[item_axes:]) if item_axes else array[None]
-    digests = b"".join(digest_array(item) for item in slices)
+    digests = b"".join(digest_array(np.asarray(item)) for item in slices)
     return np.frombuffer(digests, np.uint8).reshape(*lead, SIZE)
 
 

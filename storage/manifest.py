@@ -178,7 +178,7 @@ class StoredUnit:
             mine = [k for k, (name, _) in enumerate(places) if name == segment]
             arrays = self._load(segment, field, [places[k][1] for k in mine])
             for k, array in zip(mine, arrays, strict=True):
-                array = array if inside is None else array[inside]
+                array = np.asarray(array if inside is None else array[inside])
                 expected = table[cells[k]]
                 if not np.array_equal(digest_table(array, expected.ndim - 1), expected):
                     rows = [places[k][1]] if self.contents.layout != "whole" else None
