@@ -107,10 +107,14 @@ def _edge_costs(points: np.ndarray, quadrics: np.ndarray, edges: np.ndarray) -> 
     """Least cost of collapsing each edge and where the vertex then goes (Cramer's rule about the middle)."""
     cost = np.empty(len(edges))
     place = np.empty((len(edges), 3))
+    q = np.empty(10)
     for e in range(len(edges)):
         u, v = edges[e]
-        q = quadrics[u] + quadrics[v]
-        x, y, z = 0.5 * (points[u] + points[v])
+        for k in range(10):
+            q[k] = quadrics[u, k] + quadrics[v, k]
+        x = 0.5 * (points[u, 0] + points[v, 0])
+        y = 0.5 * (points[u, 1] + points[v, 1])
+        z = 0.5 * (points[u, 2] + points[v, 2])
         gx = q[0] * x + q[1] * y + q[2] * z + q[6]
         gy = q[1] * x + q[3] * y + q[4] * z + q[7]
         gz = q[2] * x + q[4] * y + q[5] * z + q[8]
@@ -135,12 +139,22 @@ def _edge_costs(points: np.ndarray, quadrics: np.ndarray, edges: np.ndarray) -> 
     return cost, place
 
 
+@njit(cache=True, nogil=True)
 def _faces_around(faces: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Faces at each vertex v: around[start[v] : start[v + 1]]."""
-    flat = faces.ravel()
-    around = (np.argsort(flat, kind="stable") // 3).astype(np.int32)
+    """Faces at each vertex v in order: around[start[v] : start[v + 1]]."""
     start = np.zeros(count + 1, np.int64)
-    np.cumsum(np.bincount(flat, minlength=count), out=start[1:])
+    for f in range(len(faces)):
+        for corner in range(3):
+            start[faces[f, corner] + 1] += 1
+    for v in range(count):
+        start[v + 1] += start[v]
+    free = start[:-1].copy()
+    around = np.empty(3 * len(faces), np.int32)
+    for f in range(len(faces)):
+        for corner in range(3):
+            v = faces[f, corner]
+            around[free[v]] = f
+            free[v] += 1
     return start, around
 
 
@@ -166,21 +180,7 @@ def _collapse(
         u, v = edges[e]
         if touched[u] or touched[v]:
             continue
-        free = True
-        for k in range(start[u], start[u + 1]):
-            for corner in range(3):
-                w = faces[around[k], corner]
-                free = free and not touched[w]
-                mark[w] = e
-        common = 0
-        for k in range(start[v], start[v + 1]):
-            for corner in range(3):
-                w = faces[around[k], corner]
-                free = free and not touched[w]
-                if w != u and w != v and mark[w] == e:
-                    mark[w] = -2 - e
-                    common += 1
-        if not free or common != 2:
+        if _blocked(faces, around, start, u, v, touched, mark, e):
             continue
         if _turns(points, faces, around, start[u], start[u + 1], u, v, place[e]) or _turns(
             points, faces, around, start[v], start[v + 1], v, u, place[e]
@@ -198,6 +198,36 @@ def _collapse(
 
 
 @njit(cache=True, nogil=True)
+def _blocked(
+    faces: np.ndarray,
+    around: np.ndarray,
+    start: np.ndarray,
+    u: int,
+    v: int,
+    touched: np.ndarray,
+    mark: np.ndarray,
+    e: int,
+) -> bool:
+    """Whether the surroundings of the edge (u, v) are touched or share other than two neighbours."""
+    for k in range(start[u], start[u + 1]):
+        for corner in range(3):
+            w = faces[around[k], corner]
+            if touched[w]:
+                return True
+            mark[w] = e
+    common = 0
+    for k in range(start[v], start[v + 1]):
+        for corner in range(3):
+            w = faces[around[k], corner]
+            if touched[w]:
+                return True
+            if w != u and w != v and mark[w] == e:
+                mark[w] = -2 - e
+                common += 1
+    return common != 2
+
+
+@njit(cache=True, nogil=True)
 def _turns(
     points: np.ndarray,
     faces: np.ndarray,
@@ -209,34 +239,42 @@ def _turns(
     place: np.ndarray,
 ) -> bool:
     """Whether a face at `moved` (but not at `gone`) turns over or collapses when `moved` goes to `place`."""
+    x, y, z = place[0], place[1], place[2]
     for k in range(first, last):
         f = around[k]
         a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
-        if gone in (a, b, c):
+        if gone == a or gone == b or gone == c:
             continue
         if b == moved:
             a, b, c = b, c, a
         elif c == moved:
             a, b, c = c, a, b
-        side = points[c] - points[b]
-        old = _cross(points[b] - points[a], side)
-        new = _cross(points[b] - place, side)
-        old_shape = (old * old).sum() / _longest(points[a], points[b], points[c]) ** 2
-        new_shape = (new * new).sum() / _longest(place, points[b], points[c]) ** 2
+        bx, by, bz = points[b, 0], points[b, 1], points[b, 2]
+        sx, sy, sz = points[c, 0] - bx, points[c, 1] - by, points[c, 2] - bz
+        ox, oy, oz = bx - points[a, 0], by - points[a, 1], bz - points[a, 2]
+        nx, ny, nz = bx - x, by - y, bz - z
+        side = sx * sx + sy * sy + sz * sz
+        old_shape, old_size = _shape(ox, oy, oz, sx, sy, sz, side)
+        new_shape, new_size = _shape(nx, ny, nz, sx, sy, sz, side)
         # a sliver may go on as one, and its normal is not worth keeping
         if new_shape < min(_SLIVER, old_shape):
             return True
-        if old_shape > _SLIVER and (old * new).sum() < _TURN * np.sqrt((old * old).sum() * (new * new).sum()):
+        # (o x s).(n x s) = (o.n)(s.s) - (o.s)(s.n)
+        turned = (ox * nx + oy * ny + oz * nz) * side - (ox * sx + oy * sy + oz * sz) * (
+            nx * sx + ny * sy + nz * sz
+        )
+        if old_shape > _SLIVER and turned < _TURN * np.sqrt(old_size * new_size):
             return True
     return False
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _longest(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> float:
-    """The longest squared edge of a triangle."""
-    return max(((b - a) ** 2).sum(), ((c - b) ** 2).sum(), ((a - c) ** 2).sum(), 1e-300)
-
-
-@njit(cache=True, nogil=True, inline="always")
-def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+def _shape(
+    ex: float, ey: float, ez: float, sx: float, sy: float, sz: float, side: float
+) -> tuple[float, float]:
+    """|e x s|^2 over the longest edge^4 of the triangle with edges e, s, e + s, and |e x s|^2."""
+    edge = ex * ex + ey * ey + ez * ez
+    dot = ex * sx + ey * sy + ez * sz
+    size = max(edge * side - dot * dot, 0.0)
+    longest = max(edge, side, edge + side + 2 * dot, 1e-300)
+    return size / (longest * longest), size

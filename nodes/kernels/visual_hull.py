@@ -7,7 +7,7 @@ import numpy as np
 from reperform.nodes.kernels.matte_volume import performer_ball
 from reperform.nodes.kernels.voxel_carving import camera_rows, carve, integral_images, may_be_occupied
 
-_BLOCK = 8
+_BLOCK = 4
 # Cells along the longest edge of the first, coarse grid.
 _COARSE = 40
 _MOST_VOXELS = 400_000_000

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cv2
 import numpy as np
 from numba import njit
 
@@ -9,15 +10,21 @@ from reperform.nodes.kernels.camera import radial_limit
 
 # Certainty of a single matte: neither 0 nor 1, so that odds stay finite.
 _DOUBT = 1e-3
+# Odds against from which on one matte settles it: the rest would only make p < 0.01 smaller.
+_SURE = 99.0
 
 
 def integral_images(alpha: np.ndarray) -> np.ndarray:
-    """Sums of (camera, y, x) uint8 over all pixels above and left, (camera, y + 1, x + 1) int64."""
+    """Sums of (camera, y, x) uint8 over all pixels above and left, (camera, y + 1, x + 1) int32.
+
+    Raises ValueError for pictures so large that the sums overflow.
+    """
     cameras, height, width = alpha.shape
-    sums = np.zeros((cameras, height + 1, width + 1), np.int64)
+    if height * width * 255 >= 2**31:
+        raise ValueError(f"mattes of {width}x{height} px are too large: at most 8.4 million pixels")
+    sums = np.empty((cameras, height + 1, width + 1), np.int32)
     for camera in range(cameras):
-        np.cumsum(alpha[camera], axis=0, dtype=np.int64, out=sums[camera, 1:, 1:])
-        np.cumsum(sums[camera, 1:, 1:], axis=1, out=sums[camera, 1:, 1:])
+        cv2.integral(alpha[camera], sums[camera], sdepth=cv2.CV_32S)
     return sums
 
 
@@ -91,11 +98,33 @@ def _covered(sums: np.ndarray, x: float, y: float, half: float) -> float:
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _against(
-    sums: np.ndarray, rows: np.ndarray, x: float, y: float, z: float, half: float, out: np.ndarray
-) -> int:
-    """Odds against occupancy, (1 - p) / p, of each camera that sees the point, unsorted; how many see it."""
+def _covered_pixels(sums: np.ndarray, left: float, top: float, right: float, bottom: float) -> float:
+    """Covered area, px, of a rectangle inside the picture, whose first pixel reaches from -0.5 to 0.5."""
+    total = (
+        _integral_at(sums, right + 0.5, bottom + 0.5)
+        - _integral_at(sums, left + 0.5, bottom + 0.5)
+        - _integral_at(sums, right + 0.5, top + 0.5)
+        + _integral_at(sums, left + 0.5, top + 0.5)
+    )
+    return total / 255.0
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _occupied(
+    sums: np.ndarray,
+    rows: np.ndarray,
+    x: float,
+    y: float,
+    z: float,
+    half: float,
+    misses: int,
+    views: int,
+    against: np.ndarray,
+) -> float:
+    """Probability of occupancy of one place; `against` is room for one number per camera."""
     seen = 0
+    sure = 0
+    total = 0.0
     for camera in range(len(rows)):
         px, py, depth = _project(rows[camera], x, y, z)
         if depth <= 0:
@@ -105,18 +134,15 @@ def _against(
         if p < 0:
             continue
         p = min(max(p, _DOUBT), 1 - _DOUBT)
-        out[seen] = (1 - p) / p
+        against[seen] = (1 - p) / p
+        total += against[seen]
+        sure += against[seen] > _SURE
         seen += 1
-    return seen
-
-
-@njit(cache=True, nogil=True, inline="always")
-def _combine(against: np.ndarray, seen: int, misses: int) -> float:
-    """Probability 1 / (1 + sum of the odds against, the `misses` largest left out)."""
-    total = 0.0
-    for k in range(seen):
-        total += against[k]
-    for _ in range(misses):
+        if sure > misses:
+            return 0.0
+    if seen < views:
+        return 0.0
+    for _ in range(min(misses, seen - 1)):
         worst = 0
         for k in range(1, seen):
             if against[k] > against[worst]:
@@ -142,7 +168,7 @@ def carve(
 
     sums: integral images of the mattes; rows: `camera_rows`; voxel (i, j, k) is centred at origin + voxel (i, j, k);
     blocks (x, y, z) bool: blocks of `block` voxels to evaluate. A camera that does not see a voxel says nothing of
-    it; voxels seen by fewer than `views` cameras stay as they are.
+    it; voxels seen by fewer than `views` cameras are empty. Probabilities under 0.01 may be given as 0.
     """
     against = np.empty(len(rows))
     half = 0.5 * voxel
@@ -157,9 +183,9 @@ def carve(
                     for j in range(bj * block, min(bj * block + block, ny)):
                         y = origin[1] + voxel * j
                         for k in range(bk * block, min(bk * block + block, nz)):
-                            seen = _against(sums, rows, x, y, origin[2] + voxel * k, half, against)
-                            if seen >= views:
-                                out[i, j, k] = _combine(against, seen, min(misses, seen - 1))
+                            out[i, j, k] = _occupied(
+                                sums, rows, x, y, origin[2] + voxel * k, half, misses, views, against
+                            )
 
 
 @njit(cache=True, nogil=True)
@@ -175,7 +201,8 @@ def may_be_occupied(
     """Which cells of a coarse grid may hold something: bool (x, y, z), True where in doubt.
 
     Cell (i, j, k) is the cube of edge `size` centred at origin + size (i, j, k). It is empty when more than
-    `misses` cameras that see all of it cover none of the square around its bounding sphere.
+    `misses` cameras that see all of it show nothing in the square around its bounding sphere. A camera at whose
+    border it lies and that shows nothing in its part of the square is one camera less to see an occupied place.
     """
     out = np.zeros(shape, np.bool_)
     radius = 0.8661 * size
@@ -183,7 +210,7 @@ def may_be_occupied(
         for j in range(shape[1]):
             for k in range(shape[2]):
                 x, y, z = origin[0] + size * i, origin[1] + size * j, origin[2] + size * k
-                seen, empty = 0, 0
+                seen, empty, partly = 0, 0, 0
                 for camera in range(len(rows)):
                     px, py, depth = _project(rows[camera], x, y, z)
                     if depth <= 2 * radius:
@@ -193,20 +220,19 @@ def may_be_occupied(
                     focal = max(rows[camera, 12], rows[camera, 13])
                     # 1.25: how much more than f / z a lens may stretch, and the nearer side of the sphere
                     half = 1.25 * radius * focal / (depth - radius) + 1.0
-                    height, width = sums.shape[1] - 1, sums.shape[2] - 1
-                    if (
-                        px + half < -0.5
-                        or py + half < -0.5
-                        or px - half > width - 0.5
-                        or py - half > height - 0.5
-                    ):
+                    left, top = max(px - half, -0.5), max(py - half, -0.5)
+                    right = min(px + half, sums.shape[2] - 1.5)
+                    bottom = min(py + half, sums.shape[1] - 1.5)
+                    if left >= right or top >= bottom:
                         continue
                     seen += 1
-                    whole = px - half >= -0.5 and py - half >= -0.5
-                    whole = whole and px + half <= width - 0.5 and py + half <= height - 0.5
-                    if whole and _covered(sums[camera], px, py, half) * 4 * half * half < 0.25:
-                        empty += 1
-                        if empty > misses:
-                            break
-                out[i, j, k] = empty <= misses and seen >= views
+                    if _covered_pixels(sums[camera], left, top, right, bottom) < 0.25:
+                        if right - left > 1.999 * half and bottom - top > 1.999 * half:
+                            empty += 1
+                            if empty > misses:
+                                break
+                        else:
+                            # a place in the cell is empty to this camera, or not seen by it
+                            partly += 1
+                out[i, j, k] = empty <= misses and seen - max(partly + empty - misses, 0) >= views
     return out
