@@ -1,0 +1,1 @@
+"""Export: products as files that other programs read."""
