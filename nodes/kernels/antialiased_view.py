@@ -11,8 +11,9 @@ from reperform.nodes.kernels.rasterise import rasterise
 
 
 class Samples(NamedTuple):
-    """The samples of a block of pixels that holds the whole mesh: first row and column, samples per pixel edge,
-    face hit ids (h * s, w * s) with -1 = none, barycentric (h * s, w * s, 3)."""
+    """The samples of a block of pixels that holds the whole mesh: first row and column, samples per pixel
+    edge, face hit ids (h * s, w * s) with -1 = none, barycentric (h * s, w * s, 3).
+    """
 
     top: int
     left: int

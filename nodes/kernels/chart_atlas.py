@@ -40,7 +40,9 @@ def chart_atlas(
 def texel_hits(
     uv: np.ndarray, faces_uv: np.ndarray, height: int, width: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Which face each texel of the picture shows, ids (H, W) with -1 = none, and where, barycentric (H, W, 3)."""
+    """Which face each texel of the picture shows, ids (H, W) with -1 = none, and where, barycentric (H, W,
+    3).
+    """
     pixels = np.column_stack([uv[:, 0] * width - 0.5, (1 - uv[:, 1]) * height - 0.5])
     ids, barycentric, _ = rasterise(pixels, np.ones(len(uv)), faces_uv, height, width)
     return ids, barycentric

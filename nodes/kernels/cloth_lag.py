@@ -1,4 +1,6 @@
-"""Secondary motion of a loose garment: a lattice of damped springs that lags behind the body that carries it."""
+"""Secondary motion of a loose garment: a lattice of damped springs that lags behind the body that carries
+it.
+"""
 
 from __future__ import annotations
 
@@ -10,11 +12,12 @@ from numba import njit
 def lag(
     targets: np.ndarray, looseness: np.ndarray, step: float, frequency: float, damping: float, drag: float
 ) -> np.ndarray:
-    """Displacement e (N, P, 3) of lattice points from where the body carries them, targets (N, P, 3), uniform steps (s).
+    """Displacement e (N, P, 3) of lattice points from where the body carries them, targets (N, P, 3),
+    uniform steps (s).
 
-    e'' = -a - 2 z w (e' + d v) - w^2 e, with a and v the target's acceleration and velocity, w = 2 pi frequency
-    (Hz), z = damping ratio, d = drag (the air's share of it). Semi-implicit Euler. The answer is scaled by the
-    looseness (P,) in [0, 1] and bounded smoothly at 0.16 m.
+    e'' = -a - 2 z w (e' + d v) - w^2 e, with a and v the target's acceleration and velocity, w = 2 pi
+    frequency (Hz), z = damping ratio, d = drag (the air's share of it). Semi-implicit Euler. The answer is
+    scaled by the looseness (P,) in [0, 1] and bounded smoothly at 0.16 m.
     """
     count, points = targets.shape[0], targets.shape[1]
     offset = np.zeros((count, points, 3))
@@ -51,8 +54,8 @@ def push_out(
 ) -> np.ndarray:
     """Points (N, P, 3) moved out of the capsules starts-ends (N, C, 3) with radii (C, 2) at start and end.
 
-    A point inside goes straight away from the nearest point of the capsule's axis, but never inwards past `centre`
-    (N, 3), the axis of the garment: what is pushed goes outwards.
+    A point inside goes straight away from the nearest point of the capsule's axis, but never inwards past
+    `centre` (N, 3), the axis of the garment: what is pushed goes outwards.
     """
     moved = points.copy()
     for n in range(points.shape[0]):

@@ -15,10 +15,11 @@ from vtkmodules.vtkFiltersCore import vtkFlyingEdges3D
 class Part:
     """One implicit part in the rest pose; lengths in metres.
 
-    With `radii` it is an ellipsoid at `start` whose axes are `side`, `end - start`, their cross product. Without, it
-    is a loft from `start` to `end`: at stations t in [0, 1] an ellipse of half axes `half_u` along `side` and
-    `half_w` along side x axis, its centre moved by `shift_u`, `shift_w`; both ends are flat. `folds` waves of
-    relative `fold_depth` run around the section. `carve` removes the part from what was built before it.
+    With `radii` it is an ellipsoid at `start` whose axes are `side`, `end - start`, their cross product.
+    Without, it is a loft from `start` to `end`: at stations t in [0, 1] an ellipse of half axes `half_u`
+    along `side` and `half_w` along side x axis, its centre moved by `shift_u`, `shift_w`; both ends are
+    flat. `folds` waves of relative `fold_depth` run around the section. `carve` removes the part from what
+    was built before it.
     """
 
     name: str
@@ -111,7 +112,9 @@ def part_bounds(part: Part, margin: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def smooth_union(a: np.ndarray, b: np.ndarray, blend: float) -> np.ndarray:
-    """Minimum of two distances, rounded over `blend` metres: min(a, b) - max(blend - |a - b|, 0)^2 / (4 blend)."""
+    """Minimum of two distances, rounded over `blend` metres: min(a, b) - max(blend - |a - b|, 0)^2 / (4
+    blend).
+    """
     h = np.maximum(blend - np.abs(a - b), 0)
     return np.minimum(a, b) - h * h * (0.25 / blend)
 
@@ -157,7 +160,8 @@ def nearest_part(points: np.ndarray, parts: Sequence[Part]) -> tuple[np.ndarray,
 
 
 def isosurface(grid: np.ndarray, lower: np.ndarray, voxel: float) -> tuple[np.ndarray, np.ndarray]:
-    """Zero level of a distance grid: vertices (V, 3) float32, faces (F, 3) int32, counter-clockwise from outside.
+    """Zero level of a distance grid: vertices (V, 3) float32, faces (F, 3) int32, counter-clockwise from
+    outside.
 
     Source: Schroeder, Maynard, Geveci 2015, "Flying edges" (VTK's implementation).
     """

@@ -22,10 +22,10 @@ def skin_dual_quaternion(
     """Posed vertices (T, V, 3) float32 from rest vertices (V, 3), weights (V, B) with rows that sum to 1,
     and bone motions rest -> posed, rotation (T, B, 3, 3) and translation (T, B, 3).
 
-    Q = sum_b w_b q_b / |.|;  v' = R(Q) v + t(Q); every q_b is taken on the hemisphere of the first bone's.
+    Q = sum_b w_b q_b / |.|; v' = R(Q) v + t(Q); every q_b is taken on the hemisphere of the first bone's.
 
-    Source: Kavan, Collins, Zara, O'Sullivan 2008, ACM TOG, "Geometric skinning with approximate dual quaternion
-    blending".
+    Source: Kavan, Collins, Zara, O'Sullivan 2008, ACM TOG, "Geometric skinning with approximate dual
+    quaternion blending".
     """
     motion = dual_quaternions(rotation, translation)
     sign = np.where((motion[..., :4] * motion[:, :1, :4]).sum(-1, keepdims=True) < 0, -1.0, 1.0)

@@ -1,4 +1,6 @@
-"""A cyclorama and its light: the floor and wall behind a performer, the shadow on them, the shading of a surface."""
+"""A cyclorama and its light: the floor and wall behind a performer, the shadow on them, the shading of a
+surface.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,9 @@ COARSE = 4
 
 
 def lambert(normals: np.ndarray) -> np.ndarray:
-    """Light on a surface with unit normals (N, 3): sum_k s_k max(0, n . l_k) plus half-sphere ambient; float32 (N,)."""
+    """Light on a surface with unit normals (N, 3): sum_k s_k max(0, n . l_k) plus half-sphere ambient;
+    float32 (N,).
+    """
     lamps = LAMPS / np.linalg.norm(LAMPS, axis=1, keepdims=True)
     wrapped = np.clip((normals @ lamps.T + 0.4) / 1.4, 0, None)
     sky = AMBIENT * (0.75 + 0.25 * normals[:, 1])
@@ -27,7 +31,8 @@ def lambert(normals: np.ndarray) -> np.ndarray:
 def shadow_map(
     vertices: np.ndarray, faces: np.ndarray, half: float = 2.4, cell: float = 0.03
 ) -> tuple[np.ndarray, np.ndarray]:
-    """(share of light lost on the floor (n, n) by z, x; its corner (x, z)) under a mesh lit softly from above.
+    """(share of light lost on the floor (n, n) by z, x; its corner (x, z)) under a mesh lit softly from
+    above.
 
     Surface area is dropped straight down: what is low darkens a small spot, what is high a wide one.
     """
@@ -48,7 +53,8 @@ def cyclorama(
     matrix: np.ndarray, rotation: np.ndarray, translation: np.ndarray, image_size: np.ndarray, unevenness: float,
     shadow: tuple[np.ndarray, np.ndarray] | None, strength: float,
 ) -> np.ndarray:  # fmt: skip
-    """Brightness (height, width), about 1, of floor and round wall as a camera sees them; lens distortion is ignored.
+    """Brightness (height, width), about 1, of floor and round wall as a camera sees them; lens distortion
+    is ignored.
 
     unevenness: relative amplitude of the light's slow changes over the set. strength scales the shadow.
     """

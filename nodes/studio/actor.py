@@ -1,4 +1,6 @@
-"""The virtual actor, built once per costume: surface, skinning weights, atlas and loose garment, in the rest pose."""
+"""The virtual actor, built once per costume: surface, skinning weights, atlas and loose garment, in the
+rest pose.
+"""
 
 from __future__ import annotations
 
@@ -64,7 +66,8 @@ _PALETTES: dict[str, dict[str, tuple[Rgb, ...]]] = {
 
 
 class Actor(NamedTuple):
-    """Rest pose at the reference stature: vertices (V, 3), faces (F, 3), weights (V, B), atlas, garment place.
+    """Rest pose at the reference stature: vertices (V, 3), faces (F, 3), weights (V, B), atlas, garment
+    place.
 
     garment (V, 2): t along the loose garment and turns round it; t = nan where the vertex is not on it.
     """
@@ -118,7 +121,9 @@ def garment_place(points: np.ndarray, skirt: Part) -> np.ndarray:
 
 
 def part_weights(points: np.ndarray, part: Part) -> np.ndarray:
-    """Weights (N, B) of points on one part: linear between its knots; a garment is shared by hips and thighs."""
+    """Weights (N, B) of points on one part: linear between its knots; a garment is shared by hips and
+    thighs.
+    """
     weights = np.zeros((len(points), len(BONE)))
     bones = [BONE[bone] for bone in part.bones]
     if len(bones) == 1:

@@ -81,7 +81,9 @@ def _hair_bun() -> list[Part]:
 
 
 def _arm(sleeve: str, upper: float, lower: float, cuff: float) -> list[Part]:
-    """Left arm; `upper`, `lower`: cloth over the skin; the sleeve ends at `cuff` of the forearm (0: at the elbow)."""
+    """Left arm; `upper`, `lower`: cloth over the skin; the sleeve ends at `cuff` of the forearm (0: at the
+    elbow).
+    """
     shoulder, elbow, wrist = (0.160, 1.405, -0.012), (0.343, 1.186, -0.012), (0.502, 0.999, 0.006)
     tip: Point = (0.566, 0.918, 0.018)
     side: Point = (0.766, 0.643, 0.0)
@@ -111,7 +113,9 @@ def _arm(sleeve: str, upper: float, lower: float, cuff: float) -> list[Part]:
 
 
 def _leg(cloth: str, thigh: float, shin: float, hem: float, boot: float, boot_top: float) -> list[Part]:
-    """Left leg; `thigh`, `shin`: cloth over the skin, `hem`: extra width at the ankle, `boot`: leather over the shin."""
+    """Left leg; `thigh`, `shin`: cloth over the skin, `hem`: extra width at the ankle, `boot`: leather over
+    the shin.
+    """
     hip, knee, ankle = (0.090, 0.93, -0.004), (0.105, 0.495, 0.008), (0.118, 0.088, -0.018)
     parts = [
         Part("left_thigh", cloth, ("left_thigh",), hip, (0.1057, 0.475, 0.008), stations=(0, 0.25, 0.6, 0.9, 1),

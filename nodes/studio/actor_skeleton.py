@@ -1,4 +1,6 @@
-"""The virtual actor's skeleton in its rest pose: arms 40 degrees from the body, legs a little apart, facing +z."""
+"""The virtual actor's skeleton in its rest pose: arms 40 degrees from the body, legs a little apart, facing
++z.
+"""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ class Style(NamedTuple):
 
 
 _SPEED = (0.0, 0.15, 0.4, 0.8, 1.4, 2.0, 2.6, 3.6)
-_TABLE = Style(
+_TABLE = Style(*(np.array(row) for row in dict(
     cadence=(0.0, 0.55, 0.80, 0.90, 1.00, 1.22, 1.38, 1.50),
     duty=(0.70, 0.68, 0.65, 0.62, 0.58, 0.47, 0.38, 0.34),
     ahead=(0.092, 0.091, 0.088, 0.080, 0.070, 0.030, -0.015, -0.030),
@@ -61,7 +61,7 @@ _TABLE = Style(
     elbow=tuple(a * _DEGREE for a in (14, 14, 15, 18, 24, 58, 84, 92)),
     elbow_swing=tuple(a * _DEGREE for a in (0, 1, 3, 6, 12, 14, 16, 18)),
     arm_side=tuple(a * _DEGREE for a in (14, 14, 14, 14, 14, 17, 19, 20)),
-)  # fmt: skip
+).values()))  # fmt: skip
 
 
 def style_at(speed: np.ndarray) -> Style:
@@ -76,11 +76,12 @@ def smoothstep(x: np.ndarray) -> np.ndarray:
 
 
 def locomotion(time: np.ndarray, speed: np.ndarray, turn: np.ndarray, phase: float, anchor: int) -> Plan:
-    """The plan of moving at `speed` (m/s) and `turn` (rad/s, left positive), sampled at `time` (N,), uniform.
+    """The plan of moving at `speed` (m/s) and `turn` (rad/s, left positive), sampled at `time` (N,),
+    uniform.
 
-    The gait cycle is at `phase` (0: the left heel strikes) at sample `anchor`. Each foot is planted where the hips
-    pass during its stance, so it never slides; in between it swings. At the ends of the time range footsteps are
-    guesses: give a second or two more than is used.
+    The gait cycle is at `phase` (0: the left heel strikes) at sample `anchor`. Each foot is planted where
+    the hips pass during its stance, so it never slides; in between it swings. At the ends of the time range
+    footsteps are guesses: give a second or two more than is used.
     """
     step = float(time[1] - time[0])
     style = style_at(speed)

@@ -28,24 +28,35 @@ def perform(
     walk_speed: Annotated[float, Param("m/s", 0.3, 1.9, "speed of walking")] = 1.3,
     jog_speed: Annotated[float, Param("m/s", 1.9, 3.6, "speed of jogging")] = 2.4,
     turn: Annotated[float, Param("rad/s", 0.0, 2.0, "how fast turn_left and turn_right turn")] = 0.8,
+    height: Annotated[
+        float,
+        Param("m", 0.0, 2.4, "of a jump's rise, a reaching hand or a ducking head; 0: the motion's own"),
+    ] = 0.0,
+    length: Annotated[float, Param("m", 0.0, 2.5, "of a jump; 0: the motion's own")] = 0.0,
     phase: Annotated[float, Param("cycle", 0.0, 1.0, "where in the gait cycle the take starts")] = 0.0,
     heading: Annotated[float, Param("rad", -7.0, 7.0, "turns the whole take about the vertical")] = 0.0,
     stature: Annotated[float, Param("m", 1.2, 2.1, "height of the actor, without lifting the arms")] = 1.72,
 ) -> Performance:
     """What the virtual actor really does: a closed textured mesh of one topology, joints and foot contacts.
 
-    The actor walks over the ground y = 0 (metres); the ground it covers is centred on the origin. Returns mesh
-    vertices (T, V, 3), T = round(seconds fps), with one topology and one atlas per costume over all motions, joints
-    (T, 21, 3), and planted (T, 2): the ball of the (left, right) foot rests on the ground and does not move.
+    The actor walks over the ground y = 0 (metres); the ground it covers is centred on the origin. Returns
+    mesh vertices (T, V, 3), T = round(seconds fps), with one topology and one atlas per costume over all
+    motions, joints (T, 21, 3), and planted (T, 2): the ball of the (left, right) foot rests on the ground
+    and does not move.
 
-    A plan gives speed and turn over time; footsteps are put where the hips pass during each stance; legs are solved
-    in closed form to stay on them; the surface follows by dual-quaternion skinning, and the loose garment by
-    e'' = -a - 2 z w (e' + d v) - w^2 e behind the body that carries it, pushed out by the legs.
+    A plan gives speed and turn over time; footsteps are put where the hips pass during each stance; legs
+    are solved in closed form to stay on them; the surface follows by dual-quaternion skinning, and the
+    loose garment by e'' = -a - 2 z w (e' + d v) - w^2 e behind the body that carries it, pushed out by the
+    legs.
 
-    Source: 004 table 2.1 (the inventory of motions); Kavan et al. 2008 (skinning); Boulic et al. 1990, The Visual
-    Computer 6 (gait as a function of speed).  Departure: procedural, since the seeds' captures are not public.
+    Source: 004 table 2.1 (the inventory of motions); Kavan et al. 2008 (skinning); Boulic et al. 1990, The
+    Visual Computer 6 (gait as a function of speed). Departure: procedural, since the seeds' captures are
+    not public.
     """
-    plan, time = plan_motion(motion, seconds, walk_speed, jog_speed, turn, phase)
+    size = stature / REFERENCE_STATURE
+    plan = plan_motion(
+        motion, seconds, walk_speed / size, jog_speed / size, turn, phase, height / size, length / size
+    )
     frames = round(MARGIN * RATE) + np.round(np.arange(max(2, round(seconds * fps))) * RATE / fps).astype(int)
     plan = _centred(plan, frames, heading)
     rotation, joints = solve(plan)
@@ -53,8 +64,7 @@ def perform(
     actor = build_actor(costume)
     vertices = skin_dual_quaternion(actor.vertices, actor.weights, rotation[frames], translation[frames])
     vertices += garment_displacement(actor, rotation, translation, joints, 1 / RATE, frames)
-    size = stature / REFERENCE_STATURE
-    rate = np.float32(fps)
+    rate = np.array(fps, np.float32)
     return Performance(
         MeshSequence((vertices * size).astype(np.float32), actor.faces, rate),
         TextureAtlas(actor.uv, actor.faces_uv, actor.image),

@@ -22,12 +22,14 @@ _X, _Y, _Z = np.eye(3)
 
 
 class Plan(NamedTuple):
-    """A motion at N instants, in the frame of the reference stature. Pairs are (left, right); angles in radians.
+    """A motion at N instants, in the frame of the reference stature. Pairs are (left, right); angles in
+    radians.
 
-    track (N, 2): ground x, z of the hips; heading (N,): yaw of the whole body, 0 facing +z, positive to the left;
-    rise (N,): hips above their rest height; hips, spine, head (N, 3): (forward, left turn, lean right down) of each;
-    arms (N, 2, 4): forward swing, raise to the side, twist, elbow; ball (N, 2, 3): where the ball of each foot would
-    touch the ground (y: height over it); foot_yaw, foot_pitch (N, 2): toe up positive; planted (N, 2).
+    track (N, 2): ground x, z of the hips; heading (N,): yaw of the whole body, 0 facing +z, positive to the
+    left; rise (N,): hips above their rest height; hips, spine, head (N, 3): (forward, left turn, lean right
+    down) of each; arms (N, 2, 4): forward swing, raise to the side, twist, elbow; ball (N, 2, 3): where the
+    ball of each foot would touch the ground (y: height over it); foot_yaw, foot_pitch (N, 2): toe up
+    positive; planted (N, 2).
     """
 
     track: np.ndarray
@@ -49,7 +51,9 @@ def about(axis: np.ndarray, angle: np.ndarray) -> np.ndarray:
 
 
 def solve(plan: Plan) -> tuple[np.ndarray, np.ndarray]:
-    """(rotation (N, B, 3, 3) rest -> posed of every bone, joints (N, B, 3)); planted feet are kept where they are."""
+    """(rotation (N, B, 3, 3) rest -> posed of every bone, joints (N, B, 3)); planted feet are kept where
+    they are.
+    """
     count = len(plan.track)
     rotation = np.tile(np.eye(3), (count, len(NAMES), 1, 1))
     facing = about(_Y, plan.heading)
@@ -112,7 +116,8 @@ def _pose_arm(rotation: np.ndarray, arm: np.ndarray, chest: np.ndarray, prefix: 
 def _feet(plan: Plan) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Ankle positions (N, 2, 3), foot and toe rotations (N, 2, 3, 3).
 
-    A foot with its toes up turns about the heel, one with its heel up about the ball, where the toes stay flat.
+    A foot with its toes up turns about the heel, one with its heel up about the ball, where the toes stay
+    flat.
     """
     count = len(plan.track)
     ankles, foot, toe = np.empty((count, 2, 3)), np.empty((count, 2, 3, 3)), np.empty((count, 2, 3, 3))

@@ -30,11 +30,11 @@ def rig(
 ) -> Cameras:
     """Cameras on a circle that look at a stage round the origin and keep all of it in frame.
 
-    The stage is the upright cylinder of stage_radius and stage_height (m) on the floor. Camera k stands at azimuth
-    2 pi (k + e) / n, seen from the origin; e, and the relative changes of radius and height, are drawn once from
-    the seed, uniform in +-unevenness. Each camera looks at the axis so that top and bottom of the stage are equally
-    far from the picture's edges; one focal length for all, the longest that keeps the stage in frame, square
-    pixels, no distortion.
+    The stage is the upright cylinder of stage_radius and stage_height (m) on the floor. Camera k stands at
+    azimuth 2 pi (k + e) / n, seen from the origin; e, and the relative changes of radius and height, are
+    drawn once from the seed, uniform in +-unevenness. Each camera looks at the axis so that top and bottom
+    of the stage are equally far from the picture's edges; one focal length for all, the longest that keeps
+    the stage in frame, square pixels, no distortion.
 
     Raises ValueError where a camera would stand on the stage.
     Source: 004 section 2.2 (8 cameras on a circle of 8 m diameter, about 2 m up).

@@ -22,8 +22,8 @@ def true_mattes(
 ) -> Mattes:
     """Share of every pixel that the true surface covers: alpha = hits / s^2, s^2 samples on a regular grid.
 
-    mesh: vertices (V, 3) in metres; cameras with distortion. Returns alpha (height, width), 255 = covered. With
-    the supersampling of `studio.film` the alpha is exactly the one it composites with.
+    mesh: vertices (V, 3) in metres; cameras with distortion. Returns alpha (height, width), 255 = covered.
+    With the supersampling of `studio.film` the alpha is exactly the one it composites with.
 
     Source: Pineda 1988, SIGGRAPH (coverage by edge functions).
     """
