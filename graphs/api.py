@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from reperform.graphs.engine import Engine, Progress
-from reperform.graphs.executor import Scheduler, open_executor
-from reperform.graphs.lazy import lazy_product
 from reperform.graphs.pipeline import Pipeline, read_pipeline
 from reperform.graphs.report import RunReport
-from reperform.storage.manifest import open_unit
 from reperform.storage.store import Store
+
+if TYPE_CHECKING:
+    from reperform.graphs.executor import Executor, Scheduler
 
 
 def load(path: str | os.PathLike[str], sets: Sequence[str] = ()) -> Pipeline:
@@ -43,13 +43,20 @@ def run(
     cluster: address of a dask scheduler; keep_going: finish what a failure does not touch.
     Raises RunError where steps failed, naming items and cures; all finished results are kept.
     """
+
+    def executor() -> Executor:
+        # what computes is imported once there is something to compute
+        from reperform.graphs.executor import open_executor
+
+        return open_executor(jobs, scheduler, cluster)
+
     opened = Store(store or default_store())
     try:
         engine = Engine(
             pipeline,
             opened,
             steps,
-            open_executor=lambda: open_executor(jobs, scheduler, cluster),
+            open_executor=executor,
             progress=progress,
             keep_going=keep_going,
             resume=resume,
@@ -89,6 +96,8 @@ class Run(Mapping[str, Any]):
 
     def product(self, step: str, label: str = "") -> Any:
         """The product of one unit, its fields read on demand."""
+        from reperform.graphs.lazy import lazy_product
+
         spec = self.pipeline.catalogue.products[self.pipeline.steps[step].node.output]
         return lazy_product(self.url, self._engine.manifest(step, label).name, "", spec.load(), spec.fields)
 
@@ -99,4 +108,6 @@ class Run(Mapping[str, Any]):
 
     def lengths(self, step: str, label: str = "") -> Mapping[str, int]:
         """Lengths along `frame` and `camera` of a unit's product."""
+        from reperform.storage.manifest import open_unit
+
         return open_unit(self.url, self._engine.manifest(step, label).name).contents.lengths

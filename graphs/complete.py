@@ -9,10 +9,10 @@ import numpy as np
 
 from reperform.graphs.unit import Unit, Work
 from reperform.nodes.catalogue import FieldSpec
-from reperform.storage.digest import unpack_tables
 from reperform.storage.index import Manifest, Records
 from reperform.storage.manifest import Contents
 from reperform.storage.store import Store
+from reperform.storage.tables import unpack_tables
 
 
 def complete(unit: Unit, work: Work, fields: Mapping[str, FieldSpec], store: Store) -> dict[str, Manifest]:

@@ -12,13 +12,14 @@ from collections import deque
 from collections.abc import Sequence
 from typing import Any, Protocol
 
-from reperform.graphs.complete import complete
 from reperform.graphs.errors import RunError
+from reperform.graphs.messages import Batch
 from reperform.graphs.pipeline import Pipeline
 from reperform.graphs.report import RunReport, step_reports
 from reperform.graphs.resolve import Resolver
 from reperform.graphs.unit import Name, Unit, Work
-from reperform.storage.errors import StoreError
+from reperform.storage.digest import digest_bytes
+from reperform.storage.errors import DamagedResult, StoreError
 from reperform.storage.index import Manifest, Records, Result, Segment
 from reperform.storage.store import Store
 
@@ -147,6 +148,9 @@ class Engine:
             if self._answer(unit):
                 return
             unit.work = work = self.resolver.expand(unit)
+        except DamagedResult as damage:
+            self._mend(unit, damage.segment, damage.rows, damage.reason)
+            return
         except ValueError as error:
             self._fail(unit, f"{unit.item_text} ({unit.step.node.name}): {error}")
             return
@@ -266,8 +270,6 @@ class Engine:
         )
 
     def _send(self, unit: Unit, work: Work) -> None:
-        from reperform.graphs.batch import Batch
-
         size = self._batch_size(unit.step.node.name, len(work.queue))
         positions = [work.queue.popleft() for _ in range(min(size, len(work.queue)))]
         keys = work.keys if work.outputs is not None else [work.keys[k] for k in positions]
@@ -356,7 +358,7 @@ class Engine:
             self._stopping = True
             raise StoreError(outcome.store_error)
         if outcome.damaged:
-            self._mend(unit, positions, *outcome.damaged)
+            self._mend(unit, *outcome.damaged)
             return
         self._commit(unit, work, positions, outcome)
         self._settle(unit)
@@ -411,6 +413,8 @@ class Engine:
             self._skip_consumers(unit)
             self._close_step(unit.step.name)
             return
+        from reperform.graphs.complete import complete
+
         try:
             manifests = complete(
                 unit, work, self.pipeline.catalogue.products[unit.step.node.output].fields, self.store
@@ -420,7 +424,7 @@ class Engine:
             return
         self._finish(unit, manifests)
 
-    def _mend(self, unit: Unit, positions: list[int], segment: str, rows: Any, reason: str) -> None:
+    def _mend(self, unit: Unit, segment: str, rows: Any, reason: str) -> None:
         """An input turned out damaged: forget it, make it again, then come back to this unit."""
         if segment.startswith("manifests/"):
             broken = [
@@ -482,8 +486,6 @@ class Engine:
 
 
 def _output_key(key: bytes, take: str) -> bytes:
-    from reperform.storage.digest import digest_bytes
-
     return digest_bytes(key, take.encode())
 
 

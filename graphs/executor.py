@@ -12,7 +12,8 @@ from collections.abc import Callable, Hashable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, Literal
 
-from reperform.graphs.batch import Batch, Outcome, run_batch
+from reperform.graphs.batch import run_batch
+from reperform.graphs.messages import Batch, Outcome
 
 Scheduler = Literal["threads", "processes"]
 

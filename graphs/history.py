@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.metadata
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -39,6 +38,8 @@ def changed_parts(
 
 def library_versions() -> dict[str, str]:
     """Versions of the libraries results may depend on: recorded, not in keys."""
+    import importlib.metadata
+
     found = {}
     for library in LIBRARIES:
         try:

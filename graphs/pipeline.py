@@ -195,10 +195,10 @@ class _Builder:
     def step(self, inputs: Mapping[str, Input]) -> Step:
         node = self._node()
         ports = {port.name: port for port in node.ports}
-        for port in inputs:
-            if port not in ports:
+        for name in inputs:
+            if name not in ports:
                 raise self._error(
-                    f"node {node.name} has no input {port!r}: {nearest(port, ports)}", "inputs", port
+                    f"node {node.name} has no input {name!r}: {nearest(name, ports)}", "inputs", name
                 )
         for port in node.ports:
             if port.name in inputs:

@@ -4,22 +4,23 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from reperform.graphs.batch import Feed, Item
-from reperform.graphs.keys import SlicedPort, code_key, item_keys, product_digest, unit_key
+from reperform.graphs.keys import code_key, product_digest, unit_key
+from reperform.graphs.messages import Feed, Item
 from reperform.graphs.parameters import canonical
 from reperform.graphs.pipeline import Input, Pipeline, Step
 from reperform.graphs.unit import Unit, Work
 from reperform.nodes.catalogue import PortSpec
 from reperform.storage.digest import digest_bytes
 from reperform.storage.index import Index, Manifest
-from reperform.storage.manifest import open_unit
 
 # (step, label) -> manifest of what an earlier unit gave
 Lookup = Callable[[str, str], Manifest]
 Labelled = list[tuple[str, Manifest]]
+Inputs = list[tuple[PortSpec, str, Labelled]]
 
 
 class Resolver:
@@ -56,9 +57,9 @@ class Resolver:
             return [(take, source.name, take if source.domain == "take" else "") for take in takes]
         return [(pair, source.name, pair) for pair in source.units]
 
-    def _inputs(self, unit: Unit) -> list[tuple[PortSpec, str, Labelled]]:
+    def _inputs(self, unit: Unit) -> Inputs:
         """(port, part, manifests by label), for every port of the signature; an unwired optional one has none."""
-        found: list[tuple[PortSpec, str, Labelled]] = []
+        found: Inputs = []
         for port in unit.step.node.ports:
             wired = unit.step.inputs.get(port.name)
             if wired is None:
@@ -74,9 +75,8 @@ class Resolver:
         """Fill in the key of a unit, and the parts of it that `why` tells of."""
         node = unit.step.node
         parameters = self._key_parameters(unit)
-        code = code_key(node, canonical(parameters) + (self._run if node.volatile else b""))
         ports = [(port.name, self._digests(part, manifests)) for port, part, manifests in self._inputs(unit)]
-        unit.key = unit_key(code, ports)
+        unit.key = unit_key(self._code(unit, parameters), ports)
         unit.parts = {
             "key": unit.key.hex(),
             "node": node.name,
@@ -85,11 +85,15 @@ class Resolver:
             "inputs": {name: {label: digest.hex() for label, digest in inputs} for name, inputs in ports},
         }
 
+    def _code(self, unit: Unit, parameters: dict[str, Any] | None = None) -> bytes:
+        given = self._key_parameters(unit) if parameters is None else parameters
+        # what measures gets keys of its own in every run
+        return code_key(unit.step.node, canonical(given) + (self._run if unit.step.node.volatile else b""))
+
     def expand(self, unit: Unit) -> Work:
         """The items of a unit and their keys. Raises ValueError where the inputs' frames or cameras do not agree."""
         node, inputs = unit.step.node, self._inputs(unit)
         feeds = {port.name: self._feed(port, part, manifests) for port, part, manifests in inputs}
-        parameters = unit.step.parameters(unit.label)
         if node.over not in ("frame", "view"):
             outputs = unit.step.takes if node.output_many == "dataset" else None
             keys = (
@@ -97,31 +101,35 @@ class Resolver:
                 if outputs is not None
                 else [unit.key]
             )
-            return Work("whole", {}, [Item()], keys, tuple(feeds.values()), parameters, outputs)
-        cut = [
-            SlicedPort(
-                port.name, open_unit(self._url, manifests[0][1].name).contents, part, *self._cuts(unit, port)
+            return Work(
+                "whole", {}, [Item()], keys, tuple(feeds.values()), unit.step.parameters(unit.label), outputs
             )
-            for port, part, manifests in inputs
-            if any(self._cuts(unit, port))
-        ]
-        frames = _length("frame", [p for p in cut if p.by_frame], node.name, required=True)
+        return self._expand_items(unit, inputs, feeds)
+
+    def _expand_items(self, unit: Unit, inputs: Inputs, feeds: dict[str, Feed]) -> Work:
+        # digest tables need numpy, which a run with nothing to do is spared
+        from reperform.graphs.item_keys import SlicedPort, item_keys, length
+        from reperform.storage.manifest import open_unit
+
+        node, cut = unit.step.node, []
+        for port, part, manifests in inputs:
+            cuts = self._cuts(unit, port)
+            if any(cuts):
+                cut.append(
+                    SlicedPort(port.name, open_unit(self._url, manifests[0][1].name).contents, part, *cuts)
+                )
+        frames = length("frame", [port for port in cut if port.by_frame], node.name)
         cameras = (
-            _length("camera", [p for p in cut if p.by_camera], node.name, True)
-            if node.over == "view"
-            else None
+            length("camera", [p for p in cut if p.by_camera], node.name) if node.over == "view" else None
         )
         names = {port.name: port for port in cut}
         whole = [(p.name, self._digests(part, found)) for p, part, found in inputs if p.name not in names]
-        code = code_key(node, canonical(self._key_parameters(unit)) + (self._run if node.volatile else b""))
-        keys = item_keys(code, cut, whole, frames, cameras, node.window)
-        for name, port in names.items():
-            feeds[name] = Feed(
-                **{**vars(feeds[name]), "by_frame": port.by_frame, "by_camera": port.by_camera}
-            )
+        keys = item_keys(self._code(unit), cut, whole, frames, cameras, node.window)
+        for name, sliced in names.items():
+            feeds[name] = replace(feeds[name], by_frame=sliced.by_frame, by_camera=sliced.by_camera)
         lengths = {"frame": frames} if cameras is None else {"frame": frames, "camera": cameras}
         items = _items(frames, cameras, node.window)
-        return Work(node.over, lengths, items, keys, tuple(feeds.values()), parameters)
+        return Work(node.over, lengths, items, keys, tuple(feeds.values()), unit.step.parameters(unit.label))
 
     def _cuts(self, unit: Unit, port: PortSpec) -> tuple[bool, bool]:
         """Whether a port of a frame or view unit is cut by frame, and by camera."""
@@ -164,18 +172,6 @@ class Resolver:
         if isinstance(path, list):
             return [self._content(item) for item in path]
         return file_digest(Path(path), self._index).hex() if path else ""
-
-
-def _length(axis: str, ports: Sequence[SlicedPort], node: str, required: bool) -> int:
-    lengths = {port.name: port.contents.lengths[axis] for port in ports}
-    if not lengths and required:
-        raise ValueError(f"node {node} works by {axis}, but no input has {axis}s")
-    if len(set(lengths.values())) > 1:
-        told = ", ".join(f"{name!r} has {length}" for name, length in lengths.items())
-        raise ValueError(
-            f"node {node}: inputs must have the same number of {axis}s, but {told}: cut them to the same {axis}s"
-        )
-    return next(iter(lengths.values()))
 
 
 def _items(frames: int, cameras: int | None, window: tuple[int, int]) -> list[Item]:

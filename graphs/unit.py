@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from reperform.graphs.batch import Feed, Item
+from reperform.graphs.messages import Feed, Item
 from reperform.graphs.pipeline import Step
 from reperform.storage.index import Manifest, Result
 

@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from reperform.storage.digest import digest_bytes, digest_table
+from reperform.storage.digest import digest_bytes
 from reperform.storage.errors import UNREADABLE, DamagedResult
 from reperform.storage.shelf import open_shelf
+from reperform.storage.tables import digest_table
 
 if TYPE_CHECKING:
     from reperform.storage.segment import SegmentReader

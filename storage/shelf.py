@@ -13,11 +13,12 @@ import shutil
 import uuid
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
-
-import numpy as np
+from typing import TYPE_CHECKING, Any
 
 from reperform.storage.errors import DamagedResult, StoreError
+
+if TYPE_CHECKING:
+    import numpy as np
 
 SEGMENTS, MANIFESTS = "segments", "manifests"
 

@@ -100,8 +100,8 @@ class Store:
 
     def damaged_rows(self, name: str) -> list[int] | None:
         """Rows of a segment whose values no longer have their digests; None where nothing of it can be read."""
-        from reperform.storage.digest import unpack_tables
         from reperform.storage.segment import SegmentReader
+        from reperform.storage.tables import unpack_tables
 
         rows = self.index.rows_of(name)
         try:
