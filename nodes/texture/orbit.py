@@ -32,8 +32,7 @@ def orbit(
     width: Annotated[int, Param("px", 16, 7680, "of the picture")] = 960,
     picture_height: Annotated[int, Param("px", 16, 4320, "of the picture")] = 540,
 ) -> CameraPath:
-    """Film the performer from a circle: a pose per frame, upright, aimed at the smoothed centre of the
-    surface.
+    """Film the performer from a circle, upright and aimed at the smoothed centre of the surface.
 
     c_k: area-weighted centre of frame k, smoothed by a Gaussian (sigma = `smooth`), its height being the mean
     over the take; a_k = start + degrees k / (T - 1); eye_k = (c_k.x + radius sin a_k, height, c_k.z +

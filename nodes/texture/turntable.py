@@ -57,9 +57,10 @@ def turntable(
     shadow: Shadow = 0.5,
     grid: Grid = 1.0,
 ) -> Film:
-    """Render one captured frame from `views` directions, 360 / views degrees apart: a film that loops.
+    """Film one captured frame by a camera that goes once round: a film that loops.
 
-    Rendering as in `texture.free_viewpoint`, camera as in `texture.orbit`.
+    `views` pictures, 360 / views degrees apart. Rendering as in `texture.free_viewpoint`, camera as in
+    `texture.orbit`.
 
     Raises ValueError where the frame does not exist, footage, mattes and cameras differ in views, or unless
     exactly one of mesh and surfaces is wired.
