@@ -221,13 +221,14 @@ def export(pipeline: str, target: str, file: str, **options: Any) -> None:
     """Write a result to FILE, in the format that its ending says. Computes what is stale."""
     from reperform.graphs.errors import DefinitionError
     from reperform.nodes.export.export import write
+    from reperform.viewer.pictures.picture import overview
 
     done, step, label = _result(pipeline, target, options)
     units = done.pipeline.steps[step].units
     if label is None and len(units) > 1:
         raise DefinitionError(f"step {step!r} has {len(units)} items: choose one, as {step}/{units[0]}")
     try:
-        write(done.product(step, units[0] if label is None else label), Path(file))
+        write(done.product(step, units[0] if label is None else label), Path(file), step, overview)
     except ValueError as error:
         raise DefinitionError(f"cannot export {step} to {file}: {error}") from error
     click.echo(f"wrote {file}")
@@ -245,14 +246,29 @@ def export(pipeline: str, target: str, file: str, **options: Any) -> None:
 @_run_options
 def view(pipeline: str, step: str | None, screenshot: str | None, frame: int, **options: Any) -> None:
     """Look at results in a window: choose step and item, scrub time, orbit."""
-    from reperform.viewer.open_window import open_window
+    from reperform.graphs.errors import DefinitionError
+    from reperform.viewer.browser import Results
+    from reperform.viewer.window import check_display, start_session
+    from reperform.viewer.window import view as open_view
 
     loaded = _load(pipeline, options["sets"])
     name, label, at = _target(loaded, step) if step else (None, None, None)
+    if not screenshot:
+        check_display()
     done = _run(pipeline, [name] if name else [], **options)
-    open_window(done, name, label, at if at is not None else frame, screenshot)
-    if screenshot:
-        click.echo(f"wrote {screenshot}")
+    browser = Results(done, list(done), title=loaded.name)
+    first = frame if at is None else at
+    try:
+        if not screenshot:
+            open_view(browser, name, label, first)
+            return
+        from reperform.nodes.export.png import write_png
+        from reperform.viewer.screenshot import screenshot as take_screenshot
+
+        write_png(Path(screenshot), take_screenshot(start_session(browser, name, label, first, None)))
+    except ValueError as error:
+        raise DefinitionError(str(error)) from error
+    click.echo(f"wrote {screenshot}")
 
 
 @main.command()

@@ -37,12 +37,13 @@ def write_exports(run: Run) -> Iterator[tuple[str, bool]]:
 
 def _write(run: Run, step: str, label: str, part: str, path: Path) -> None:
     from reperform.nodes.export.export import write
+    from reperform.viewer.pictures.picture import overview
 
     product = run.product(step, label)
     for name in part.split(".") if part else ():
         product = getattr(product, name)
     path.parent.mkdir(parents=True, exist_ok=True)
-    write(product, path)
+    write(product, path, step, overview)
 
 
 def _stamp(path: Path) -> str:
