@@ -1,0 +1,220 @@
+"""Registration of all frames of all takes to the surface of one root frame."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, NamedTuple
+
+import numpy as np
+
+from reperform.nodes.declaration import Param, node
+from reperform.nodes.kernels.closest_point import closest_points
+from reperform.nodes.kernels.mesh_geometry import edges, face_areas, volume
+from reperform.nodes.kernels.registration import (
+    Pull,
+    Stage,
+    Template,
+    make_template,
+    misfit,
+    predict,
+    register_rigidly,
+)
+from reperform.nodes.kernels.registration import register as fit
+from reperform.nodes.kernels.spanning_tree import rehang
+from reperform.nodes.kernels.surface_pull import FitTarget, fit_target
+from reperform.nodes.kernels.turn_search import likely_turns, turn_matrix
+from reperform.nodes.product import Dataset
+from reperform.nodes.products.aligned import AlignedSequence
+from reperform.nodes.products.mesh import MeshSequence, Surfaces
+from reperform.nodes.products.motion import ShapeTree
+
+# A frame this near in time to its parent continues the parent's motion; others are placed anew.
+_NEAR = 2
+_TURNS = 3
+
+
+@node(over="dataset", memory=2.0)
+def register(
+    surfaces: Dataset[Surfaces],
+    tree: ShapeTree,
+    *,
+    root: Annotated[
+        Literal["spread", "tree"],
+        Param(about="spread: the frame whose surface shows most; tree: the tree's own root"),
+    ] = "spread",
+    patches: Annotated[int, Param("nodes", 8, 500, "of the coarsest deformation graph")] = 60,
+    levels: Annotated[int, Param("levels", 1, 5, "each with twice as many nodes as the last")] = 3,
+    reach: Annotated[
+        float, Param("m", 0.01, 1.0, "distance at which closest points lose their pull, coarsest level")
+    ] = 0.2,
+    detail: Annotated[float, Param("m", 0.002, 0.5, "the same at the finest level")] = 0.05,
+    stiffness: Annotated[
+        float, Param("1", 0.0, 1000.0, "resistance to change of shape against one closest point")
+    ] = 1.0,
+    iterations: Annotated[int, Param("steps", 1, 50, "Gauss-Newton steps per level")] = 4,
+    prior: Annotated[
+        float, Param("1", 0.0, 10.0, "pull of the expected place against one closest point")
+    ] = 0.1,
+    residual_gate: Annotated[float, Param("m", 0.0, 1.0, "largest residual of a trusted frame")] = 0.02,
+    stretch_gate: Annotated[float, Param("1", 0.0, 10.0, "largest stretch of a trusted frame")] = 0.3,
+) -> Dataset[AlignedSequence]:
+    """All takes in one topology: vertex i is the same point of the performer in every frame.
+
+    From the root, each frame's surface is fitted along the branches of the tree: the parent's aligned mesh
+    is carried on by its motion (consecutive frames) or turned and shifted on the ground to where shape
+    histograms agree best (frames of other times or takes), then fitted from coarse to fine by deformation
+    graphs, E = sum rho(x_i - y_i) + stiffness sum_(jk) |R_j a_jk - (g_k - g_j)|^2, with rho Welsch's loss
+    of two-way closest points of compatible normals and a_jk the root's lengths in the parent's pose.
+
+    Vertices in metres, float32. `residual` tells surface distance only; it cannot tell a limb on the wrong
+    side.
+    Raises ValueError where tree and surfaces do not belong together.
+
+    Source: 004 section 2.2.3; Sumner, Schmid and Pauly, SIGGRAPH 2007 (deformation graph); Li, Sumner and
+    Pauly, SGP 2008; Yao, Deng, Xu and Zhang, CVPR 2020 (Welsch loss).
+    Departure: deformation graphs and robust two-way closest points in place of rigid patch matching and one
+    Laplacian solve (eq 2.2); the root is moved to a frame whose limbs are clear of each other, since what
+    the root's surface joins can never come apart.
+    """
+    frames = _frames(surfaces, tree)
+    parent, order = np.asarray(tree.parent), np.asarray(tree.order)
+    if root == "spread":
+        parent, order = rehang(parent, _most_spread(frames, order))
+    first = frames[order[0]]
+    template = make_template(first.vertices, first.faces, patches, levels)
+    stages = _stages(template, reach, detail, stiffness, iterations)
+    pull = Pull(0.15, 0.1, prior)
+    aligned: dict[int, np.ndarray] = {int(order[0]): template.vertices}
+    figures = {int(order[0]): (0.0, 0.0)}
+    lengths = edges(template.faces)
+    for k in map(int, order[1:]):
+        target = fit_target(frames[k].vertices, frames[k].faces, pull.normal_length)
+        start = _start(template, frames, aligned, parent, k, target, stages[0].scale, pull)
+        aligned[k] = fit(template, start, target, stages, pull)
+        figures[k] = _figures(template, aligned[k], frames[k], lengths)
+    return {
+        name: _sequence(
+            surfaces[name], tree, number, template, aligned, figures, order[0], (residual_gate, stretch_gate)
+        )
+        for number, name in enumerate(map(str, tree.takes))
+    }
+
+
+class _Frame(NamedTuple):
+    take: int
+    instant: int
+    vertices: np.ndarray
+    faces: np.ndarray
+
+
+def _frames(surfaces: Dataset[Surfaces], tree: ShapeTree) -> list[_Frame]:
+    names = [str(name) for name in tree.takes]
+    counts = np.bincount(tree.take, minlength=len(names))
+    for name, count in zip(names, counts, strict=True):
+        if name not in surfaces or len(surfaces[name].vertices) != count:
+            got = f"{len(surfaces[name].vertices)} frames" if name in surfaces else "no such take"
+            raise ValueError(
+                f"register: the tree has {count} frames of take {name}, the surfaces have {got}: "
+                "make the tree from these surfaces"
+            )
+    return [
+        _Frame(
+            int(take),
+            int(index),
+            np.asarray(surfaces[names[take]].vertices[int(index)]),
+            np.asarray(surfaces[names[take]].faces[int(index)]),
+        )
+        for take, index in zip(tree.take, tree.frame_index, strict=True)
+    ]
+
+
+def _most_spread(frames: list[_Frame], order: np.ndarray) -> int:
+    """The frame with most surface for its volume, less 2 % per handle; ties to the one visited first."""
+    scores = []
+    for frame in frames:
+        handles = max(1 - (len(frame.vertices) - len(frame.faces) // 2) / 2, 0)
+        size = max(float(volume(frame.vertices, frame.faces)), 1e-9) ** (2 / 3)
+        scores.append(float(face_areas(frame.vertices, frame.faces).sum()) / size * 0.98**handles)
+    return int(order[np.argmax(np.array(scores)[order])])
+
+
+def _stages(
+    template: Template, reach: float, detail: float, stiffness: float, iterations: int
+) -> tuple[Stage, ...]:
+    scales = np.geomspace(reach, detail, len(template.graphs))
+    return tuple(
+        Stage(graph, float(scale), stiffness * float(scale / scales[0]), iterations)
+        for graph, scale in zip(template.graphs, scales, strict=True)
+    )
+
+
+def _start(
+    template: Template,
+    frames: list[_Frame],
+    aligned: dict[int, np.ndarray],
+    parent: np.ndarray,
+    k: int,
+    target: FitTarget,
+    scale: float,
+    pull: Pull,
+) -> np.ndarray:
+    """The pose to start from: the best of what the way to this frame suggests."""
+    up = int(parent[k])
+    here, there = frames[k], frames[up]
+    step = here.instant - there.instant
+    if here.take == there.take and abs(step) <= _NEAR:
+        options = [aligned[up]]
+        before = frames[int(parent[up])]
+        came = there.instant - before.instant
+        if before.take == there.take and 0 < abs(came) <= _NEAR and came * step > 0:
+            options.append(predict(template, aligned[up], aligned[int(parent[up])], step / came))
+        costs = [misfit(template, pose, target, scale, pull) for pose in options]
+        return options[int(np.argmin(costs))]
+    turns = [(0.0, here.vertices.mean(axis=0) - there.vertices.mean(axis=0))]
+    turns += likely_turns((there.vertices, there.faces), (here.vertices, here.faces), _TURNS)
+    best, least = aligned[up], np.inf
+    for yaw, shift in turns:
+        pose, cost = register_rigidly(
+            template, aligned[up] @ turn_matrix(yaw).T + shift, target, scale, 4, pull
+        )
+        # a body is nearly the same seen from the back: believe a large turn only for a clear gain
+        cost *= 1 + 0.1 * abs(yaw) / np.pi
+        if cost < least:
+            best, least = pose, cost
+    return best
+
+
+def _figures(template: Template, moved: np.ndarray, frame: _Frame, pairs: np.ndarray) -> tuple[float, float]:
+    """Residual (m) and stretch of a fitted frame; every third vertex speaks for the others."""
+    forth = closest_points(moved[::3], frame.vertices, frame.faces)[2]
+    back = closest_points(frame.vertices[::3], moved, template.faces)[2]
+
+    def log_length(vertices: np.ndarray) -> np.ndarray:
+        ends = vertices[pairs[:, 0]] - vertices[pairs[:, 1]]
+        return np.log(np.maximum(np.linalg.norm(ends, axis=1), 1e-6))
+
+    stretch = np.sqrt(np.mean((log_length(moved) - log_length(template.vertices)) ** 2))
+    return float((forth.mean() + back.mean()) / 2), float(stretch)
+
+
+def _sequence(
+    surfaces: Surfaces,
+    tree: ShapeTree,
+    number: int,
+    template: Template,
+    aligned: dict[int, np.ndarray],
+    figures: dict[int, tuple[float, float]],
+    root: int,
+    gates: tuple[float, float],
+) -> AlignedSequence:
+    rows = np.flatnonzero(tree.take == number)
+    rows = rows[np.argsort(tree.frame_index[rows], kind="stable")]
+    vertices = np.stack([aligned[int(k)] for k in rows]).astype(np.float32)
+    residual, stretch = np.array([figures[int(k)] for k in rows], np.float32).T
+    return AlignedSequence(
+        MeshSequence(vertices, template.faces.astype(np.int32), np.asarray(surfaces.fps, np.float32)),
+        residual,
+        stretch,
+        (residual <= gates[0]) & (stretch <= gates[1]),
+        np.asarray(str(tree.takes[tree.take[root]])),
+        np.asarray(tree.frame_index[root], np.int32),
+    )

@@ -1,0 +1,136 @@
+"""Non-rigid registration of a template surface to another surface."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from reperform.nodes.kernels.deformation_graph import (
+    DeformationGraph,
+    carried,
+    deformation_graph,
+    farthest_samples,
+)
+from reperform.nodes.kernels.graph_fit import deform, fit_step, link_arms, node_motions
+from reperform.nodes.kernels.mesh_geometry import vertex_areas, vertex_normals
+from reperform.nodes.kernels.surface_pull import FitTarget, surface_pull
+
+
+class Template(NamedTuple):
+    """The surface whose topology all frames get, and its deformation graphs from coarse to fine."""
+
+    vertices: np.ndarray  # (V, 3) float64, m
+    faces: np.ndarray  # (F, 3)
+    share: np.ndarray  # (V,) area of each vertex over the mean area
+    rigid: DeformationGraph
+    graphs: tuple[DeformationGraph, ...]
+
+
+class Stage(NamedTuple):
+    """One level of a coarse-to-fine fit."""
+
+    graph: DeformationGraph
+    scale: float  # of the Welsch loss, m
+    stiffness: float
+    iterations: int
+
+
+class Pull(NamedTuple):
+    """How surfaces draw on each other."""
+
+    normal_length: float  # m; normals count in the closest point search like this distance
+    tangential: float  # share of a pull that is not along the normal
+    prior: float  # weight of where a vertex was expected, against one closest point
+
+
+def make_template(vertices: np.ndarray, faces: np.ndarray, patches: int, levels: int) -> Template:
+    """A template with `levels` graphs, the first of `patches` nodes, each of twice as many as the one
+    before."""
+    rest = np.ascontiguousarray(vertices, np.float64)
+    samples, distances = farthest_samples(rest, faces, patches * 2 ** (levels - 1))
+    graphs = [deformation_graph(rest, samples, distances, patches * 2**k) for k in range(levels)]
+    areas = vertex_areas(rest, faces)
+    rigid = deformation_graph(rest, samples, distances, 1)
+    return Template(rest, np.asarray(faces), areas / areas.mean(), rigid, tuple(graphs))
+
+
+def register(
+    template: Template, start: np.ndarray, target: FitTarget, stages: tuple[Stage, ...], pull: Pull
+) -> np.ndarray:
+    """The template's vertices (V, 3) fitted to a target, from the pose `start` (V, 3).
+
+    Each stage takes Gauss-Newton steps from where the last ended: two-way closest points pull, links
+    between nodes resist changes of the pose against `start` and of the lengths against the template, and
+    `start` itself pulls weakly where nothing else does. In the end the template is deformed afresh by the
+    motions found, so that no detail wears off along a chain of frames.
+    """
+    moved = start
+    for stage in stages:
+        graph = carried(stage.graph, start)
+        bent, _ = node_motions(stage.graph, template.vertices, start)
+        upright = np.broadcast_to(np.eye(3), bent.shape)
+        arms = link_arms(stage.graph, template.vertices, bent, upright)
+        rotation, translation = node_motions(graph, start, moved)
+        for _ in range(stage.iterations):
+            tensor, force = _pull(template, moved, start, target, stage.scale, pull)
+            rotation, translation = fit_step(
+                graph, start, rotation, translation, arms, tensor, force, stage.stiffness
+            )
+            moved = deform(graph, start, rotation, translation)
+    finest = stages[-1].graph
+    return deform(finest, template.vertices, *node_motions(finest, template.vertices, moved))
+
+
+def register_rigidly(
+    template: Template, start: np.ndarray, target: FitTarget, scale: float, iterations: int, pull: Pull
+) -> tuple[np.ndarray, float]:
+    """`start` (V, 3) moved as one piece towards the target, and the cost (m, see `surface_pull`) there."""
+    graph = carried(template.rigid, start)
+    rotation, translation = np.eye(3)[None], np.zeros((1, 3))
+    arms = np.zeros((0, 2, 3))
+    moved = start
+    for _ in range(iterations):
+        tensor, force = _pull(template, moved, start, target, scale, pull._replace(prior=0.0))
+        rotation, translation = fit_step(graph, start, rotation, translation, arms, tensor, force, 0.0)
+        moved = deform(graph, start, rotation, translation)
+    return moved, misfit(template, moved, target, scale, pull)
+
+
+def misfit(template: Template, moved: np.ndarray, target: FitTarget, scale: float, pull: Pull) -> float:
+    """Cost (m) of a pose of the template: the robust mean distance of the two surfaces (`surface_pull`)."""
+    normals = vertex_normals(moved, template.faces)
+    return surface_pull(moved, normals, template.share, target, scale, pull.normal_length, pull.tangential)[2]
+
+
+def predict(template: Template, parent: np.ndarray, grandparent: np.ndarray, ratio: float) -> np.ndarray:
+    """Where the motion from grandparent to parent leads if it goes on for `ratio` times as long: (V, 3).
+
+    The nodes of the coarsest graph go on along their paths; those of whole steps also go on turning.
+    """
+    graph = template.graphs[0]
+    turned, shifted = node_motions(graph, template.vertices, parent)
+    before, came = node_motions(graph, template.vertices, grandparent)
+    step = turned @ np.swapaxes(before, 1, 2)
+    rotation = step @ turned if ratio > 0.75 else turned
+    places = shifted + ratio * (shifted - came)
+    # detail that the coarse graph does not carry stays as it is at the parent
+    detail = parent - deform(graph, template.vertices, turned, shifted)
+    return deform(graph, template.vertices, rotation, places) + detail
+
+
+def _pull(
+    template: Template,
+    moved: np.ndarray,
+    start: np.ndarray,
+    target: FitTarget,
+    scale: float,
+    pull: Pull,
+) -> tuple[np.ndarray, np.ndarray]:
+    normals = vertex_normals(moved, template.faces)
+    tensor, force, _ = surface_pull(
+        moved, normals, template.share, target, scale, pull.normal_length, pull.tangential
+    )
+    tensor += pull.prior * np.eye(3)
+    force += pull.prior * (start - moved)
+    return tensor, force
