@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from reperform.graphs.errors import DefinitionError, Place, nearest
+from reperform.graphs.prefix import all_takes, put_under_prefix
 from reperform.graphs.yaml_source import Keys, parse_yaml, read_yaml
 
 SHIPPED = Path(__file__).parent
@@ -82,14 +83,18 @@ def _read(path: Path, above: tuple[Path, ...]) -> Document:
     for k, include in enumerate(includes if isinstance(includes, list) else [includes]):
         where = source.place("include", k) if isinstance(includes, list) else source.place("include")
         entry = {"pipeline": include} if isinstance(include, str) else include
-        if not isinstance(entry, dict) or "pipeline" not in entry or set(entry) - {"pipeline", "vars"}:
-            raise DefinitionError("include: expected a name or path, or {pipeline: ..., vars: {...}}", where)
+        if not isinstance(entry, dict) or "pipeline" not in entry or set(entry) - {"pipeline", "vars", "as"}:
+            raise DefinitionError(
+                "include: expected a name or path, or {pipeline: ..., as: PREFIX, vars: {...}}", where
+            )
         beside = path.parent / str(entry["pipeline"])
-        _merge(
-            document,
-            _read(beside if beside.is_file() else find_pipeline(entry["pipeline"]), (*above, path.resolve())),
+        inner = _read(
+            beside if beside.is_file() else find_pipeline(entry["pipeline"]), (*above, path.resolve())
         )
-        document.vars |= entry.get("vars", {})
+        inner.vars |= entry.get("vars", {})
+        if "as" in entry:
+            _put_beside(document, inner, str(entry["as"]), where)
+        _merge(document, inner)
     own = Document(name, str(path), places={keys: source.place(*keys) for keys in source.lines})
     for key, value in source.value.items():
         if key != "include" and value is not None:
@@ -106,6 +111,14 @@ def _read(path: Path, above: tuple[Path, ...]) -> Document:
         _check_keys(body, STEP_KEYS, f"step {step!r}", source.place, ("steps", step))
     _merge(document, own)
     return document
+
+
+def _put_beside(document: Document, inner: Document, prefix: str, place: Place) -> None:
+    """Put an included pipeline under a prefix, and the takes of both together."""
+    if not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", prefix):
+        raise DefinitionError(f"include: `as` is letters, digits and _, got {prefix!r}", place)
+    put_under_prefix(inner, prefix, read_takes(inner))
+    inner.takes = all_takes(read_takes(document) if document.steps else {}, inner.takes, place)
 
 
 def _check_keys(value: Mapping[str, Any], known: Mapping[str, Any], who: str, place: Any, at: Keys) -> None:

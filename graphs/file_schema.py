@@ -7,6 +7,7 @@ from typing import Any
 from reperform.nodes.catalogue import Catalogue, NodeSpec, ParameterSpec
 
 _TEXT = {"type": "string"}
+_TEXTS = {"type": "array", "items": _TEXT, "minItems": 1}
 _VARIABLE = {"type": "string", "pattern": r"\$\{[^{}]+\}"}
 
 
@@ -39,7 +40,7 @@ def file_schema(catalogue: Catalogue) -> dict[str, Any]:
                         "type": "object",
                         "required": ["pipeline"],
                         "additionalProperties": False,
-                        "properties": {"pipeline": _TEXT, "vars": {"type": "object"}},
+                        "properties": {"pipeline": _TEXT, "as": _TEXT, "vars": {"type": "object"}},
                     },
                 ]
             },
@@ -48,7 +49,7 @@ def file_schema(catalogue: Catalogue) -> dict[str, Any]:
                 "additionalProperties": False,
                 "properties": {
                     "node": {"enum": list(catalogue.nodes)},
-                    "inputs": {"type": "object", "additionalProperties": _TEXT},
+                    "inputs": {"type": "object", "additionalProperties": {"oneOf": [_TEXT, _TEXTS]}},
                     "params": {"type": "object"},
                     "about": _TEXT,
                     "takes": {"oneOf": [_TEXT, {"type": "array", "items": _TEXT}]},
@@ -61,7 +62,10 @@ def file_schema(catalogue: Catalogue) -> dict[str, Any]:
 
 def _of_node(node: NodeSpec) -> dict[str, Any]:
     inputs = {
-        port.name: {**_TEXT, "description": f"{port.many}: {port.product.rsplit('.', 1)[1]}"}
+        port.name: {
+            **({"oneOf": [_TEXT, _TEXTS]} if port.many == "dataset" else _TEXT),
+            "description": f"{port.many}: {port.product.rsplit('.', 1)[1]}",
+        }
         for port in node.ports
     }
     params = {parameter.name: _parameter(parameter) for parameter in node.parameters}

@@ -19,14 +19,23 @@ def expand(document: Document) -> dict[str, tuple[str, dict[str, Any], dict[str,
     for name, body in document.steps.items():
         for values in _combinations(used[name], document.matrix):
             inputs = {}
-            for port, text in (body.get("inputs") or {}).items():
-                step, rest = _split(str(text))
-                if rest.startswith("[*]") or not used.get(step):
-                    inputs[port] = text
-                else:
-                    inputs[port] = label(step, {k: values[k] for k in used[step]}) + rest
+            for port, wired in (body.get("inputs") or {}).items():
+                named = [_variant(text, used, values) for text in sources(wired)]
+                inputs[port] = named if isinstance(wired, list) else named[0]
             steps[label(name, values)] = (name, {**body, "inputs": inputs} if inputs else body, values)
     return steps
+
+
+def sources(wired: Any) -> list[str]:
+    """The references of an input: one, or those of a list."""
+    return [str(text) for text in wired] if isinstance(wired, list) else [str(wired)]
+
+
+def _variant(text: str, used: Mapping[str, list[str]], values: Mapping[str, Any]) -> str:
+    step, rest = _split(text)
+    if rest.startswith("[*]") or not used.get(step):
+        return text
+    return label(step, {k: values[k] for k in used[step]}) + rest
 
 
 def label(step: str, values: Mapping[str, Any]) -> str:
@@ -56,8 +65,8 @@ def _uses(name: str, document: Document, above: tuple[str, ...]) -> list[str]:
     if body is None or name in above:
         return []  # reported later, as an unknown step or a cycle
     direct = variables_in(body.get("params") or {})
-    for text in (body.get("inputs") or {}).values():
-        step, rest = _split(str(text))
+    for text in [text for wired in (body.get("inputs") or {}).values() for text in sources(wired)]:
+        step, rest = _split(text)
         if not rest.startswith("[*]"):
             direct |= set(_uses(step, document, (*above, name)))
     return [variable for variable in document.matrix if variable in direct]

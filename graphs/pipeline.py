@@ -138,13 +138,16 @@ def _wires(name: str, entry: Any, steps: Mapping[str, Any], document: Document) 
     base, body, _ = entry
     return {
         port: _reference(
-            str(text), steps, document.place("steps", base, "inputs", port), f"step {name!r}, input {port!r}"
+            wired, steps, document.place("steps", base, "inputs", port), f"step {name!r}, input {port!r}"
         )
-        for port, text in (body.get("inputs") or {}).items()
+        for port, wired in (body.get("inputs") or {}).items()
     }
 
 
-def _reference(text: str, steps: Mapping[str, Any], place: Place, who: str) -> Input:
+def _reference(wired: Any, steps: Mapping[str, Any], place: Place, who: str) -> Input:
+    if isinstance(wired, list):
+        return _several([_reference(str(text), steps, place, who) for text in wired], place, who)
+    text = str(wired)
     match = _REFERENCE.match(text)
     if not match:
         raise DefinitionError(f"{who}: expected STEP, STEP.FIELD or STEP/TAKE, got {text!r}", place)
@@ -156,6 +159,16 @@ def _reference(text: str, steps: Mapping[str, Any], place: Place, who: str) -> I
     if step not in steps:
         raise DefinitionError(f"{who}: no step {step!r}: {nearest(step, steps)}", place)
     return Input(step, part, item)
+
+
+def _several(inputs: Sequence[Input], place: Place, who: str) -> Input:
+    """A list of steps as one dataset with their names as labels."""
+    names = [wired.step for wired in inputs]
+    if not names or any(wired.part or wired.item is not None or wired.gather for wired in inputs):
+        raise DefinitionError(f"{who}: a list holds names of steps, without field or item", place)
+    if len(set(names)) < len(names):
+        raise DefinitionError(f"{who}: every step once, got {', '.join(names)}", place)
+    return Input(names[0], gather=tuple((name, name) for name in names))
 
 
 def _sorted(document: Document, wires: Mapping[str, dict[str, Input]]) -> dict[str, dict[str, Input]]:
@@ -241,10 +254,14 @@ class _Builder:
         return self.catalogue.products[output].bases
 
     def _check_type(self, port: PortSpec, wired: Input) -> None:
+        for name in wired.steps:
+            self._check_one_type(port, Input(name, wired.part))
+
+    def _check_one_type(self, port: PortSpec, wired: Input) -> None:
         given = self._products(wired)
         wanted = port.product.rsplit(".", 1)[1]
         if not given:
-            source = self.catalogue.products[self.steps[wired.steps[0]].node.output]
+            source = self.catalogue.products[self.steps[wired.step].node.output]
             raise self._error(
                 f"step {wired.step!r} has no output {wired.part!r}: {nearest(wired.part, source.inside)}",
                 "inputs",
@@ -280,6 +297,14 @@ class _Builder:
             if wired.gather and ports[name].many != "dataset":
                 raise self._error(
                     f"input {name!r} takes one product; {wired.step} gathers several", "inputs", name
+                )
+            several = [name for name in wired.steps if self.steps[name].domain != "single"]
+            if wired.gather and wired.item is None and several:
+                raise self._error(
+                    f"input {name!r} gathers one product per step, but {several[0]!r} gives one per "
+                    f"{self.steps[several[0]].domain}: choose one of its items",
+                    "inputs",
+                    name,
                 )
             if not wired.gather and domain != "single":
                 takes = tuple(take for take in takes if take in source.takes)
