@@ -11,8 +11,9 @@ from typing import Any
 from reperform.graphs.keys import code_key, product_digest, unit_key
 from reperform.graphs.messages import Feed, Item
 from reperform.graphs.parameters import canonical
-from reperform.graphs.pipeline import Input, Pipeline, Step
+from reperform.graphs.pipeline import Pipeline, Step
 from reperform.graphs.unit import Unit, Work
+from reperform.graphs.wiring import Input
 from reperform.nodes.catalogue import PortSpec
 from reperform.storage.digest import digest_bytes
 from reperform.storage.index import Index, Manifest
