@@ -17,6 +17,7 @@ from reperform.nodes.kernels.captured_surface import (
 from reperform.nodes.kernels.rasterise import interpolate
 from reperform.nodes.kernels.surface_hits import surface_hits
 from reperform.nodes.products.cameras import CameraPath, Cameras
+from reperform.nodes.products.colour_match import ColourMatch
 from reperform.nodes.products.footage import Film, Footage, Mattes
 from reperform.nodes.products.mesh import MeshSequence, Surfaces
 from reperform.nodes.texture.parameters import (
@@ -41,6 +42,7 @@ def free_viewpoint(
     camera: CameraPath,
     mesh: MeshSequence | None = None,
     surfaces: Surfaces | None = None,
+    colours: ColourMatch | None = None,
     *,
     sharpness: Sharpness = 4.0,
     erode: Erode = 1.5,
@@ -57,7 +59,8 @@ def free_viewpoint(
     the colours are blended: colour = sum_c w_c I_c / sum_c w_c, w_c = visible_c trust_c facing_c /
     (angle_c + 0.03)^sharpness, angle_c between the directions to the virtual and to the real camera; trust
     fades towards outlines, matte edges and depth jumps, so that no backing colour bleeds in. What no camera
-    sees takes the colour of the surface around it. Lens distortion of the sources is respected.
+    sees takes the colour of the surface around it. Lens distortion of the sources is respected; `colours`
+    brings the cameras' colours together first.
 
     Raises ValueError where footage, mattes and cameras differ in views, or unless one mesh is wired.
 
@@ -71,6 +74,7 @@ def free_viewpoint(
         source.vertices,
         source.faces,
         pictures(footage, mattes, cameras),
+        gains=None if colours is None else colours.gain,
         erode=erode,
         feather=feather,
         bias=bias,

@@ -9,6 +9,7 @@ import numpy as np
 from reperform.nodes.declaration import Param, node
 from reperform.nodes.kernels.captured_surface import capture_surface
 from reperform.nodes.products.cameras import Cameras
+from reperform.nodes.products.colour_match import ColourMatch
 from reperform.nodes.products.footage import Film, Footage, Mattes
 from reperform.nodes.products.mesh import MeshSequence, Surfaces
 from reperform.nodes.texture.free_viewpoint import calibration, pictures, view_of
@@ -30,6 +31,7 @@ def held_out(
     cameras: Cameras,
     mesh: MeshSequence | None = None,
     surfaces: Surfaces | None = None,
+    colours: ColourMatch | None = None,
     *,
     camera: Annotated[int, Param("1", 0, 999, "the camera whose picture is not used")] = 0,
     sharpness: Sharpness = 4.0,
@@ -42,7 +44,8 @@ def held_out(
     """Render what camera k saw from all the others, through camera k's own lens model, over plain grey.
 
     The film has the size of the footage; `texture.picture_error` compares it with the real view. Weights as
-    in `texture.free_viewpoint`.
+    in `texture.free_viewpoint`. With `colours` wired the film is in camera k's own colours (the three factors
+    are all that is taken from its picture).
 
     Raises ValueError where there is no such camera, or none besides it.
 
@@ -55,8 +58,19 @@ def held_out(
         raise ValueError(
             f"texture.held_out: camera must be one of 0 .. {count - 1}, with others, got {camera}"
         )
-    others = [view for k, view in enumerate(pictures(footage, mattes, cameras)) if k != camera]
-    surface = capture_surface(source.vertices, source.faces, others, erode=erode, feather=feather, bias=bias)
+    kept = [k for k in range(count) if k != camera]
+    gains = None if colours is None else colours.gain[kept]
+    views = pictures(footage, mattes, cameras)
+    others = [views[k] for k in kept]
+    surface = capture_surface(
+        source.vertices, source.faces, others, gains=gains, erode=erode, feather=feather, bias=bias
+    )
+    if colours is not None:
+        # In the colours of the camera that is replaced.
+        own = colours.gain[camera].astype(np.float64)
+        surface = surface._replace(
+            gains=surface.gains / own, colours=(surface.colours / own).astype(np.float32)
+        )
     grey = np.full(footage.images.shape[1:], background, np.float32)
     picture, coverage = view_of(
         surface, calibration(cameras, camera), grey, samples=samples, sharpness=sharpness, bias=bias

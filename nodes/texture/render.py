@@ -23,6 +23,7 @@ from reperform.nodes.kernels.rasterise import interpolate
 from reperform.nodes.kernels.surface_hits import SurfaceHits, surface_hits
 from reperform.nodes.product import Dataset
 from reperform.nodes.products.cameras import CameraPath, Cameras
+from reperform.nodes.products.colour_match import ColourMatch
 from reperform.nodes.products.footage import Film, Footage, Mattes
 from reperform.nodes.products.mesh import MeshSequence
 from reperform.nodes.products.motion import Animation, Provenance
@@ -47,6 +48,7 @@ def render(
     footage: Dataset[Footage],
     mattes: Dataset[Mattes],
     cameras: Dataset[Cameras],
+    colours: Dataset[ColourMatch] | None = None,
     *,
     alignment: Annotated[
         Flow,
@@ -89,7 +91,10 @@ def render(
         inward = apply(towards, Placement(-yaw, np.zeros(2)))
         chosen = _nearest_cameras(cameras[take], captured, inward, views)
         shots = _pictures(footage[take], mattes[take], cameras[take], frame, chosen)
-        surface = capture_surface(captured, faces, shots, erode=erode, feather=feather, bias=bias)
+        gains = None if colours is None else np.asarray(colours[take].gain)[chosen]
+        surface = capture_surface(
+            captured, faces, shots, gains=gains, erode=erode, feather=feather, bias=bias
+        )
         renders.append(textured(surface, hits.ids, hits.barycentric, inward, sharpness=sharpness, bias=bias))
         weights.append(weight)
     colour = renders[0][0] if len(renders) == 1 else _blend(hits, renders, weights, alignment)

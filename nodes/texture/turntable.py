@@ -11,6 +11,7 @@ from reperform.nodes.kernels.backdrop import backdrop
 from reperform.nodes.kernels.captured_surface import capture_surface
 from reperform.nodes.kernels.mesh_geometry import centroid
 from reperform.nodes.products.cameras import Cameras
+from reperform.nodes.products.colour_match import ColourMatch
 from reperform.nodes.products.footage import Film, Footage, Mattes
 from reperform.nodes.products.mesh import MeshSequence, Surfaces
 from reperform.nodes.texture.free_viewpoint import calibration, view_of
@@ -36,6 +37,7 @@ def turntable(
     cameras: Cameras,
     mesh: MeshSequence | None = None,
     surfaces: Surfaces | None = None,
+    colours: ColourMatch | None = None,
     *,
     frame: Annotated[int, Param("1", 0, 1_000_000, "the captured frame")] = 0,
     views: Annotated[int, Param("1", 1, 3600, "pictures of one turn")] = 60,
@@ -76,7 +78,15 @@ def turntable(
     vertices = source.vertices[frame]
     faces = source.faces if mesh is not None else source.faces[frame]
     shots = [(images[k], alpha[k], calibration(cameras, k)) for k in range(len(images))]
-    surface = capture_surface(vertices, faces, shots, erode=erode, feather=feather, bias=bias)
+    surface = capture_surface(
+        vertices,
+        faces,
+        shots,
+        gains=None if colours is None else colours.gain,
+        erode=erode,
+        feather=feather,
+        bias=bias,
+    )
     path = circle(
         np.repeat(centroid(vertices, faces)[None], views, axis=0),
         np.radians(start) + 2 * np.pi * np.arange(views) / views,
