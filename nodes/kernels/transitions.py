@@ -51,6 +51,12 @@ def find_transitions(
     return Transitions(m[kept], n[kept], length[kept], cost[kept])
 
 
+def window_cost(distance: np.ndarray, m: int, n: int, half: int) -> float:
+    """W at one cell and half length; the window must fit."""
+    window = np.arange(1 - half, half)
+    return float((half - np.abs(window)) @ distance[m + window, n + window]) / half**2
+
+
 @njit(cache=True, nogil=True)
 def windowed_cost(distance: np.ndarray, half: int) -> np.ndarray:
     """W at one half length for all cells (frames_a, frames_b); inf where the window does not fit."""

@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Annotated, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 
 from reperform.nodes.declaration import Param, node
-from reperform.nodes.kernels.ground_plane import align
+from reperform.nodes.kernels.join_preview import captured_acceleration, preview_join
 from reperform.nodes.kernels.strong_part import strong_part
 from reperform.nodes.kernels.transition_edits import Edit
-from reperform.nodes.kernels.transitions import find_transitions
+from reperform.nodes.kernels.transitions import find_transitions, window_cost
 from reperform.nodes.product import Dataset, Pairs
 from reperform.nodes.products.mesh import MeshSequence
 from reperform.nodes.products.motion import Dissimilarity, MotionGraph
 
-# Vertices that tell a placement; more would not move it.
-_SAMPLE = 400
+_WHO = "motion_graph.surface"
+# Vertices on which joins are foreseen.
+_SAMPLE = 200
+# Lengths tried between the shortest and the longest.
+_LENGTHS = 7
+# A join that jerks no more than this, against the capture, need not be longer.
+_EASY = 1.0
 
 
 class _Candidate(NamedTuple):
@@ -27,6 +32,8 @@ class _Candidate(NamedTuple):
     n: int
     length: int
     cost: float
+    yaw: float
+    offset: tuple[float, float]
 
 
 @node(over="dataset", memory=1.0)
@@ -37,19 +44,27 @@ def surface(
     transitions: Annotated[int, Param("1", 1, 100, "transitions kept per ordered pair of takes (N)")] = 4,
     shortest: Annotated[float, Param("s", 0.02, 2.0, "least half length L of a transition")] = 0.2,
     longest: Annotated[float, Param("s", 0.02, 2.0, "greatest half length L of a transition")] = 0.96,
+    length: Annotated[
+        Literal["smooth", "similar"],
+        Param(about="L: the shortest that jerks little enough, or the one of least cost"),
+    ] = "smooth",
+    jerk: Annotated[
+        float, Param("1", 0.0, 100.0, "greatest acceleration at a join over the capture's; 0 takes any")
+    ] = 1.5,
     threshold: Annotated[
         float, Param("1", 0.0, 1.0, "greatest cost, in units of the largest dissimilarity of the dataset")
     ] = 0.5,
     self_transitions: Annotated[bool, Param(about="whether a take may pass into itself")] = True,
     apart: Annotated[float, Param("s", 0.0, 60.0, "least time between both ends within one take")] = 0.4,
     remove: Annotated[
-        tuple[str, ...], Param(about="transitions to leave out, as SOURCE>TARGET or SOURCE:FIRST-LAST>TARGET")
+        tuple[str, ...],
+        Param(about="transitions to leave out: SOURCE>TARGET, each TAKE, TAKE:FRAME or TAKE:FIRST-LAST"),
     ] = (),
     only: Annotated[
         tuple[str, ...], Param(about="if any, the only transitions to keep, written as for `remove`")
     ] = (),
     forbid: Annotated[
-        tuple[str, ...], Param(about="frames that no transition may blend, as TAKE or TAKE:FIRST-LAST")
+        tuple[str, ...], Param(about="frames that no transition may blend: TAKE or TAKE:FIRST-LAST")
     ] = (),
 ) -> MotionGraph:
     """Takes as nodes, and for every ordered pair of takes its N best transitions (m, n, L) as edges.
@@ -59,55 +74,97 @@ def surface(
         cost(m, n, L) = sum_k a'(k) c(m + k, n + k) / sum_k a'(k),   a'(k) = min(1 - a, a), a = (k + L) / 2 L
 
     over |k| <= L, in units of the largest c of the dataset. Each transition carries the ground-plane motion
-    that lays its target window on its source window (least squares with the weights a'). `core` marks the
-    largest
-    strongly connected part: a walk that keeps to it never dies; nothing else is thrown away.
+    that lays its target window on its source window (least squares with the weights a'). The blend is
+    foreseen
+    on a few hundred vertices: where no L keeps its peak acceleration (median and 99th percentile of vertices)
+    under `jerk` times the 99th percentile of the captured frames', the transition is not made. `core` marks
+    the largest strongly connected part: a walk that keeps to it never dies; nothing else is thrown away.
 
     Raises ValueError where takes differ in topology or frame rate, a matrix does not fit its takes, an edit
     cannot be read, or no transition is left.
 
-    Source: Huang, Tejera, Collomosse and Hilton 2015, ACM TOG (000 eqs 2-5, section 4.3).
-    Departure: the cost is normalised by the weights (as printed the shortest window always wins); candidates
-    are local minima of the windowed cost and differ from each other by at least the shortest L; Kovar,
-    Gleicher and Pighin 2002 for the ground-plane placement and for pruning to the strongly connected part.
+    Source: Huang, Tejera, Collomosse and Hilton 2015, ACM TOG (000 eqs 2-5, section 4.3); Kovar, Gleicher and
+    Pighin 2002, SIGGRAPH, for the ground-plane motion and the strongly connected part.
+    Departure: the cost is divided by its weights (as printed the shortest window always wins); candidates are
+    local minima of the windowed cost that differ by at least the shortest L; L is by default chosen by the
+    smoothness of the blend, since the cost of a local minimum only grows with L.
     """
     takes = tuple(meshes)
-    fps = _common(meshes)
-    rate = float(fps)
-    bounds = (max(1, round(shortest * rate)), round(longest * rate))
+    fps = _frame_rate(meshes)
+    bounds = (max(1, round(shortest * float(fps))), round(longest * float(fps)))
     if bounds[1] < bounds[0]:
-        raise ValueError(
-            f"motion_graph.surface: longest ({longest} s) must not be below shortest ({shortest} s)"
-        )
+        raise ValueError(f"{_WHO}: longest ({longest} s) must not be below shortest ({shortest} s)")
     largest = _largest(similarity)
     edits = _Edits(takes, remove, only, forbid)
+    joins = _Joins([np.asarray(meshes[take].vertices) for take in takes], bounds, length, jerk)
     found: list[_Candidate] = []
     for (a, b), product in similarity.items():
         if a == b and not self_transitions:
             continue
-        distance = edits.masked(np.asarray(product.distance, np.float64), a, b)
-        expected = (meshes[a].vertices.shape[0], meshes[b].vertices.shape[0])
-        if distance.shape != expected:
-            raise ValueError(
-                f"motion_graph.surface: matrix {a}, {b} must be {expected}, got {distance.shape}"
-            )
-        best = find_transitions(
-            distance,
-            transitions,
-            *bounds,
-            apart=max(1, round(apart * rate)) if a == b else 0,
-            spread=bounds[0],
-        )
-        ends = takes.index(a), takes.index(b)
-        for m, n, length, cost in zip(*best, strict=True):
-            if cost <= threshold * largest and edits.allow(a, m, b, n):
-                found.append(_Candidate(*ends, int(m), int(n), int(length), float(cost) / largest))
+        source, target = takes.index(a), takes.index(b)
+        distance = joins.fitting(np.asarray(product.distance, np.float64), source, target, takes)
+        distance = edits.masked(distance, a, b)
+        gap = max(1, round(apart * float(fps))) if a == b else 0
+        best = find_transitions(distance, 4 * transitions, *bounds, apart=gap, spread=bounds[0])
+        kept = 0
+        for m, n, half in zip(best.m.tolist(), best.n.tolist(), best.length.tolist(), strict=True):
+            if kept == transitions:
+                break
+            made = joins.make(distance, source, target, m, n, half) if edits.allow(a, m, b, n) else None
+            if made and made.cost <= threshold * largest:
+                found.append(made._replace(cost=made.cost / largest))
+                kept += 1
     if not found:
         raise ValueError(
-            f"motion_graph.surface: no transition within threshold {threshold}, L {shortest} to {longest} s "
-            f"and the edits among takes {', '.join(takes)}: raise the threshold, shorten L, use longer takes"
+            f"{_WHO}: no transition among takes {', '.join(takes)} within threshold {threshold}, "
+            f"jerk {jerk}, L {shortest} to {longest} s and the edits: raise threshold or jerk, shorten L, use longer takes"
         )
-    return _graph(found, takes, meshes, fps)
+    return _graph(found, takes, [len(points) for points in joins.takes], fps)
+
+
+class _Joins:
+    """Foresees transitions on a few points of each take."""
+
+    def __init__(
+        self, vertices: Sequence[np.ndarray], bounds: tuple[int, int], choice: str, jerk: float
+    ) -> None:
+        step = max(1, vertices[0].shape[1] // _SAMPLE)
+        self.takes = [np.ascontiguousarray(points[:, ::step], np.float64) for points in vertices]
+        self.weight = np.ones(self.takes[0].shape[1])
+        self.bounds, self.choice = bounds, choice
+        self.captured = captured_acceleration(self.takes)
+        self.limit = jerk if jerk > 0 else np.inf
+
+    def fitting(self, distance: np.ndarray, source: int, target: int, takes: Sequence[str]) -> np.ndarray:
+        """The matrix, once it is known to belong to its takes."""
+        expected = (len(self.takes[source]), len(self.takes[target]))
+        if distance.shape != expected:
+            names = f"{takes[source]}, {takes[target]}"
+            raise ValueError(f"{_WHO}: matrix {names} must be {expected}, got {distance.shape}")
+        return distance
+
+    def make(
+        self, distance: np.ndarray, source: int, target: int, m: int, n: int, similar: int
+    ) -> _Candidate | None:
+        """The transition at (m, n) with its length and placement; None where it would jerk."""
+        a, b = self.takes[source], self.takes[target]
+        lengths = np.array([similar])
+        if self.choice == "smooth":
+            room = min(m, n, len(a) - 1 - m, len(b) - 1 - n, self.bounds[1])
+            lengths = np.unique(np.linspace(self.bounds[0], room, _LENGTHS).round().astype(int))
+        best, least = None, np.inf
+        for half in lengths.tolist():
+            cost = window_cost(distance, m, n, half)
+            if not np.isfinite(cost):
+                break
+            yaw, x, z, peak = preview_join(
+                a, b, m, n, half, self.weight, self.captured, min(least, self.limit)
+            )
+            if peak < least:
+                best, least = _Candidate(source, target, m, n, half, cost, yaw, (x, z)), peak
+            if least <= _EASY:
+                break
+        return best
 
 
 class _Edits:
@@ -116,10 +173,9 @@ class _Edits:
     def __init__(
         self, takes: Sequence[str], remove: Sequence[str], only: Sequence[str], forbid: Sequence[str]
     ) -> None:
-        who = "motion_graph.surface"
-        self.remove = [Edit(text, takes, who) for text in remove]
-        self.only = [Edit(text, takes, who) for text in only]
-        self.leave = [Edit(f"{text}>*", takes, who) for text in forbid]
+        self.remove = [Edit(text, takes, _WHO) for text in remove]
+        self.only = [Edit(text, takes, _WHO) for text in only]
+        self.leave = [Edit(f"{text}>*", takes, _WHO) for text in forbid]
 
     def masked(self, distance: np.ndarray, a: str, b: str) -> np.ndarray:
         """The matrix with what no window may touch set to infinity."""
@@ -138,20 +194,19 @@ class _Edits:
         )
 
 
-def _common(meshes: Dataset[MeshSequence]) -> np.ndarray:
+def _frame_rate(meshes: Dataset[MeshSequence]) -> np.ndarray:
     """The frame rate that all takes share, once their topologies are known to agree."""
     first, *others = meshes
     faces, fps = np.asarray(meshes[first].faces), np.asarray(meshes[first].fps)
     for take in others:
         if not np.array_equal(np.asarray(meshes[take].faces), faces):
             raise ValueError(
-                f"motion_graph.surface: takes must share one topology; {take} differs from {first}: "
-                f"align them first"
+                f"{_WHO}: takes must share one topology; {take} differs from {first}: align them first"
             )
         if not np.isclose(np.asarray(meshes[take].fps), fps):
+            other = np.asarray(meshes[take].fps)
             raise ValueError(
-                f"motion_graph.surface: takes must share one frame rate; {first} has {fps} Hz, "
-                f"{take} has {np.asarray(meshes[take].fps)} Hz"
+                f"{_WHO}: takes must share one frame rate; {first} has {fps} Hz, {take} has {other} Hz"
             )
     return fps.astype(np.float32)
 
@@ -162,33 +217,20 @@ def _largest(similarity: Pairs[Dissimilarity]) -> float:
 
 
 def _graph(
-    found: list[_Candidate], takes: Sequence[str], meshes: Dataset[MeshSequence], fps: np.ndarray
+    found: list[_Candidate], takes: Sequence[str], frames: Sequence[int], fps: np.ndarray
 ) -> MotionGraph:
-    samples = [_sample(np.asarray(meshes[take].vertices)) for take in takes]
-    placements = [_placement(samples[c.source], samples[c.target], c) for c in found]
     source, target, m, n, length = (np.array([c[k] for c in found], np.int32) for k in range(5))
     return MotionGraph(
         takes=np.array(takes),
-        frames=np.array([len(points) for points in samples], np.int32),
+        frames=np.array(frames, np.int32),
         source=source,
         target=target,
         source_frame=m,
         target_frame=n,
         length=length,
         cost=np.array([c.cost for c in found], np.float32),
-        yaw=np.array([yaw for yaw, _ in placements]),
-        offset=np.array([offset for _, offset in placements]),
+        yaw=np.array([c.yaw for c in found]),
+        offset=np.array([c.offset for c in found]),
         core=strong_part(source, target, m - length, n + length),
         fps=fps,
     )
-
-
-def _sample(vertices: np.ndarray) -> np.ndarray:
-    return vertices[:, :: max(1, vertices.shape[1] // _SAMPLE)]
-
-
-def _placement(source: np.ndarray, target: np.ndarray, c: _Candidate) -> tuple[float, np.ndarray]:
-    window = np.arange(1 - c.length, c.length)
-    weights = np.repeat((c.length - np.abs(window)) / c.length, source.shape[1])
-    placement, _ = align(source[c.m + window].reshape(-1, 3), target[c.n + window].reshape(-1, 3), weights)
-    return placement.yaw, placement.offset

@@ -44,4 +44,4 @@ def meshes() -> Mapping[str, MeshSequence]:
 @pytest.fixture(scope="session")
 def graph(meshes: Mapping[str, MeshSequence]) -> MotionGraph:
     similarity = {(a, b): vertex_velocity((meshes[a], meshes[b])) for a in meshes for b in meshes}
-    return surface(similarity, meshes)
+    return surface(similarity, meshes, transitions=8)
