@@ -14,7 +14,9 @@ from reperform.viewer.pictures.scene import CLAY, Body, checker_colours
 from reperform.viewer.session import Session
 
 SIZE = (1280, 800)
-PANEL, BAR = 250, 74
+PANEL, BAR, TREE = 250, 74, 0.58
+# Seconds between two ticks from which drawing counts as slow.
+SLOW = 0.25
 BODY, GRID = "body", "grid"
 
 
@@ -50,7 +52,7 @@ class Window:
 
         self.session, self.window = session, window
         self._gui, self._rendering = gui, rendering
-        self._last, self._shown = time.monotonic(), ("", "")
+        self._last, self._shown, self._smooth = time.monotonic(), ("", ""), True
         self._material_key: tuple[str, str, str] | None = None
         self._material: Any = None
         self._rows: dict[int, tuple[str, str]] = {}
@@ -58,11 +60,14 @@ class Window:
         self._build_bar()
         self._scene = gui.SceneWidget()
         self._scene.scene = rendering.Open3DScene(window.renderer)
-        self._scene.scene.set_background([0.93, 0.94, 0.95, 1.0])
-        self._scene.scene.scene.set_sun_light([0.35, -1.0, -0.45], [1.0, 1.0, 1.0], 60000)
+        self._scene.scene.set_background([0.78, 0.84, 0.92, 1.0])
+        self._scene.scene.scene.set_sun_light([0.35, -1.0, -0.45], [1.0, 1.0, 1.0], 90000)
         self._scene.scene.scene.enable_sun_light(True)
+        self._build_ground()
+        # Buttons and sliders stay quick where drawing the scene is slow.
+        self._scene.enable_scene_caching(True)
         self._picture = gui.ImageWidget()
-        for widget in (self._panel, self._scene, self._picture, self._bar):
+        for widget in (self._tree, self._panel, self._scene, self._picture, self._bar):
             window.add_child(widget)
         window.set_on_layout(self._layout)
         window.set_on_tick_event(self._tick)
@@ -93,8 +98,6 @@ class Window:
 
     def _build_panel(self) -> None:
         gui, em = self._gui, self.window.theme.font_size
-        self._panel = gui.Vert(0.4 * em, gui.Margins(0.6 * em, 0.6 * em, 0.6 * em, 0.6 * em))
-        self._panel.add_child(gui.Label(self.session.browser.title or "reperform"))
         self._tree = gui.TreeView()
         self._tree.can_select_items_with_children = True
         root = self._tree.get_root_item()
@@ -107,7 +110,7 @@ class Window:
             for item in items:
                 self._rows[self._tree.add_text_item(row, item)] = (step, item)
         self._tree.set_on_selection_changed(self._choose)
-        self._panel.add_child(self._tree)
+        self._panel = gui.Vert(0.4 * em, gui.Margins(0.6 * em, 0.4 * em, 0.6 * em, 0.6 * em))
         self._finish = gui.Combobox()
         self._finish.set_on_selection_changed(self._set_finish)
         self._panel.add_child(self._finish)
@@ -116,7 +119,9 @@ class Window:
         self._follow.set_on_checked(self._set_follow)
         self._panel.add_child(self._follow)
         self._details = gui.Label("")
-        self._panel.add_child(self._details)
+        fields = gui.ScrollableVert(0, gui.Margins(0, 0.3 * em, 0, 0))
+        fields.add_child(self._details)
+        self._panel.add_child(fields)
 
     def _build_bar(self) -> None:
         gui, em = self._gui, self.window.theme.font_size
@@ -135,7 +140,9 @@ class Window:
     def _layout(self, _: Any) -> None:
         gui, whole, scale = self._gui, self.window.content_rect, self.window.scaling
         panel, bar = round(PANEL * scale), round(BAR * scale)
-        self._panel.frame = gui.Rect(whole.x, whole.y, panel, whole.height)
+        low = whole.y + round(TREE * whole.height)
+        self._tree.frame = gui.Rect(whole.x, whole.y, panel, low - whole.y)
+        self._panel.frame = gui.Rect(whole.x, low, panel, whole.get_bottom() - low)
         main = gui.Rect(whole.x + panel, whole.y, whole.width - panel, whole.height - bar)
         self._scene.frame = self._picture.frame = main
         self._bar.frame = gui.Rect(whole.x + panel, whole.get_bottom() - bar, whole.width - panel, bar)
@@ -171,6 +178,10 @@ class Window:
     def _tick(self) -> bool:
         now = time.monotonic()
         passed, self._last = now - self._last, now
+        if passed > SLOW and self._smooth:
+            # Without a graphics card, smooth edges cost ten times the rest.
+            self._scene.scene.view.set_antialiasing(False)
+            self._smooth = False
         if self.session.tick(passed):
             self.refresh()
             return True
@@ -217,14 +228,15 @@ class Window:
         home = self._home(body)
         scene.add_geometry(BODY, as_mesh(body, home), self._material_for(body))
         if fresh:
-            self._stand_back(home)
+            self._stand_back()
+        self._scene.force_redraw()
 
     def _home(self, body: Body) -> np.ndarray:
         """What is subtracted from the surface so that the eye can stay where it is."""
         middle = body.vertices.mean(0) if len(body.vertices) else np.zeros(3)
         return middle * [1, 0, 1] if self.session.follow else np.zeros(3)
 
-    def _stand_back(self, home: np.ndarray) -> None:
+    def _stand_back(self) -> None:
         session, framing = self.session, self.session.framing
         middle = (framing.low + framing.high) / 2
         target = np.array([0.0, middle[1], 0.0]) if session.follow else middle
@@ -237,27 +249,28 @@ class Window:
                 np.cos(view.azimuth) * np.cos(view.elevation),
             ]
         )
-        bounds = self._scene.scene.bounding_box
-        self._scene.setup_camera(np.degrees(view.opening), bounds, target.astype(np.float32))
         eye = (target + distance * back).astype(np.float32)
         self._scene.look_at(target.astype(np.float32), eye, np.array([0, 1, 0], np.float32))
-        self._draw_grid(target)
+        ground = np.eye(4)
+        ground[:3, 3] = target * [1, 0, 1]
+        self._scene.scene.set_geometry_transform(GRID, ground)
 
-    def _draw_grid(self, target: np.ndarray) -> None:
+    def _build_ground(self) -> None:
+        """A grid of half metres. It is moved, never replaced: replaced lines stop the drawing for good."""
         from open3d import geometry, utility
 
         reach = np.arange(-6, 7) * 0.5
         ends = [[[a, 0, -3], [a, 0, 3]] for a in reach] + [[[-3, 0, a], [3, 0, a]] for a in reach]
-        points = np.reshape(ends, (-1, 3)) + target * [1, 0, 1]
+        points = np.reshape(ends, (-1, 3)).astype(np.float64)
         lines = geometry.LineSet()
         lines.points = utility.Vector3dVector(points)
         lines.lines = utility.Vector2iVector(np.arange(len(points), dtype=np.int32).reshape(-1, 2))
-        lines.paint_uniform_color([0.74, 0.77, 0.80])
+        lines.paint_uniform_color([0.45, 0.50, 0.56])
         material = self._rendering.MaterialRecord()
         material.shader, material.line_width = "unlitLine", 1.2
-        if self._scene.scene.has_geometry(GRID):
-            self._scene.scene.remove_geometry(GRID)
         self._scene.scene.add_geometry(GRID, lines, material)
+        bounds = geometry.AxisAlignedBoundingBox(np.full(3, -6.0), np.full(3, 6.0))
+        self._scene.setup_camera(np.degrees(self.session.view.opening), bounds, np.zeros(3, np.float32))
 
     def _material_for(self, body: Body) -> Any:
         """The material of a surface; kept, so that a texture goes to the graphics card once."""

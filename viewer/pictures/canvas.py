@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
@@ -107,7 +107,9 @@ def write_text(
 
 
 @contextmanager
-def figure(size: tuple[int, int], layout: str = "constrained") -> Iterator[Any]:
+def figure(
+    size: tuple[int, int], layout: Literal["constrained", "compressed"] = "constrained"
+) -> Iterator[Any]:
     """A matplotlib figure of width x height pixels in the house style; `pixels(fig)` reads it.
 
     layout: matplotlib's; `compressed` where axes have an aspect of their own.
