@@ -72,14 +72,14 @@ def textured(
     towards (P, 3): unit directions to the virtual eye, in the space of the capture. With r = min(1,
     reliability / 0.01): r view-dependent colour + (1 - r) vertex colour.
     """
-    points = interpolate(surface.vertices, surface.faces, ids, barycentric)
-    normals = interpolate(surface.normals, surface.faces, ids, barycentric)
-    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+    attributes = np.concatenate([surface.vertices, surface.normals, surface.colours], axis=1)
+    points, normals, fill = np.split(interpolate(attributes, surface.faces, ids, barycentric), 3, axis=1)
+    normals = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
     colour, reliability = view_dependent_colour(
         points, normals, towards, surface.views, sharpness=sharpness, bias=bias, gains=surface.gains
     )
     share = np.minimum(1, reliability / FILL)[:, None]
-    filled = share * colour + (1 - share) * interpolate(surface.colours, surface.faces, ids, barycentric)
+    filled = share * colour + (1 - share) * fill
     return filled.astype(np.float32), reliability
 
 

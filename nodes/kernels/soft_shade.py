@@ -19,14 +19,14 @@ def soft_shade(
 ) -> np.ndarray:
     """Lit colours (P, 3), 0..255, of points (P, 3) with unit normals, seen along unit `towards`.
 
-    colour = albedo (0.46 + 0.16 n_y + 0.48 lit max(0, n . l) + 0.12 (1 - n . v)^3); lit is the share of nine
+    colour = albedo (0.36 + 0.14 n_y + 0.42 lit max(0, n . l) + 0.30 n . v + 0.10 (1 - n . v)^3); lit is the share of nine
     samples around the point in the light's depth map that nothing stands in front of. vertices (V, 3) m,
     faces: what casts the shadow; light (3,): direction towards the light.
     """
     aim = light / np.linalg.norm(light)
     key = np.maximum(normals @ aim, 0) * _lit(points, normals, vertices, faces, aim)
-    rim = np.power(1 - np.clip(np.einsum("pk,pk->p", normals, towards), 0, 1), 3)
-    strength = 0.46 + 0.16 * normals[:, 1] + 0.48 * key + 0.12 * rim
+    frontal = np.clip(np.einsum("pk,pk->p", normals, towards), 0, 1)
+    strength = 0.36 + 0.14 * normals[:, 1] + 0.42 * key + 0.30 * frontal + 0.10 * (1 - frontal) ** 3
     return np.clip(albedo * strength[:, None], 0, 255)
 
 

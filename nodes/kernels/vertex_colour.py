@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numba import njit
 
-from reperform.nodes.kernels.laplacian import vertex_adjacency
 from reperform.nodes.kernels.source_view import SourceView
 from reperform.nodes.kernels.view_dependent import view_dependent_colour
 
@@ -29,17 +29,35 @@ def vertex_colour(
     """
     seen, reliability = view_dependent_colour(vertices, normals, None, views, bias=bias, gains=gains)
     keep = np.clip((reliability - 0.05) / 0.2, 0, 1).astype(np.float64)
-    # Rows whose colour can change; last column: whether a vertex has a colour yet.
-    open_rows = np.flatnonzero(keep < 1)
-    rows = vertex_adjacency(faces, len(vertices))[open_rows].astype(np.float64)
-    state = np.concatenate([seen * (keep > 0)[:, None], (keep > 0)[:, None]], axis=1).astype(np.float64)
-    own, fixed = keep[open_rows, None], seen[open_rows]
+    colour, known = _spread(seen.astype(np.float64), keep, np.ascontiguousarray(faces, np.int32), passes)
+    colour[~known] = colour[known].mean(axis=0) if known.any() else 128.0
+    return colour.astype(np.float32)
+
+
+@njit(cache=True, nogil=True)
+def _spread(
+    seen: np.ndarray, keep: np.ndarray, faces: np.ndarray, passes: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Colours (V, 3), and which vertices (V,) have one."""
+    count = len(seen)
+    colour, known = seen.copy(), keep > 0
+    total, number = np.zeros((count, 3)), np.zeros(count)
     for _ in range(passes):
-        spread = rows @ np.concatenate([state[:, :3] * state[:, 3:], state[:, 3:]], axis=1)
-        reached = spread[:, 3] > 0
-        mean = spread[:, :3] / np.maximum(spread[:, 3:], 1.0)
-        state[open_rows[reached], :3] = (own * fixed + (1 - own) * mean)[reached]
-        state[open_rows[reached], 3] = 1
-    known = state[:, 3] > 0
-    state[~known, :3] = state[known, :3].mean(axis=0) if known.any() else 128.0
-    return state[:, :3].astype(np.float32)
+        total[:], number[:] = 0.0, 0.0
+        for f in range(len(faces)):
+            for corner in range(3):
+                to = faces[f, corner]
+                if keep[to] >= 1:
+                    continue
+                for step in range(1, 3):
+                    neighbour = faces[f, (corner + step) % 3]
+                    if known[neighbour]:
+                        number[to] += 1
+                        for k in range(3):
+                            total[to, k] += colour[neighbour, k]
+        for v in range(count):
+            if number[v] > 0:
+                known[v] = True
+                for k in range(3):
+                    colour[v, k] = keep[v] * seen[v, k] + (1 - keep[v]) * total[v, k] / number[v]
+    return colour, known

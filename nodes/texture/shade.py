@@ -29,8 +29,8 @@ def shade(
     colours: VertexColours | None = None,
     *,
     colour: Annotated[list[float], Param("1", 0, 1, "red, green, blue of a mesh without vertex colours")] = [  # noqa: B006
-        0.80,
-        0.76,
+        0.84,
+        0.78,
         0.70,
     ],
     samples: Samples = 3,
@@ -40,7 +40,7 @@ def shade(
 ) -> Film:
     """Render a frame in soft light, with its shadow on the floor.
 
-    Lit colour = albedo (0.46 + 0.16 n_y + 0.48 lit max(0, n . l) + 0.12 (1 - n . v)^3) with the albedo
+    Lit colour = albedo (0.36 + 0.14 n_y + 0.42 lit max(0, n . l) + 0.30 n . v + 0.10 (1 - n . v)^3) with the albedo
     `colour` or, where wired, the vertex colours of `texture.paint`, which stay on the surface and so show
     how well it is aligned.
 

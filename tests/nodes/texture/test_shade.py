@@ -30,7 +30,7 @@ def test_lit_from_above_with_a_shadow_on_the_floor(scene):
     rows = np.nonzero(inside)[0]
     top, bottom = np.percentile(rows, [10, 90])
     assert (
-        grey[: int(top)][inside[: int(top)]].mean() > 1.3 * grey[int(bottom) :][inside[int(bottom) :]].mean()
+        grey[: int(top)][inside[: int(top)]].mean() > 1.15 * grey[int(bottom) :][inside[int(bottom) :]].mean()
     )
     bare = shade(view, mesh, shadow=0.0)
     darker = (bare.images.mean(axis=-1) - grey > 8) & (film.coverage == 0)
