@@ -18,17 +18,21 @@ PADDING = 2
 
 
 def chart_atlas(
-    vertices: np.ndarray, faces: np.ndarray, size: int, density: np.ndarray | None = None
+    vertices: np.ndarray,
+    faces: np.ndarray,
+    size: int,
+    density: np.ndarray | None = None,
+    regions: np.ndarray | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """uv (N, 2) float32 and faces_uv (F, 3) int32 of a square picture of `size` texels.
 
     Each face is seen from the coordinate direction nearest its normal; connected faces of one direction are a
     chart, drawn orthographically (stretch at most 1.73) and packed in rows. density (F,): relative resolution
-    wanted by each face, averaged over its chart.
+    wanted by each face, averaged over its chart. regions (F,) int: charts do not cross from one to another.
     """
     density = np.ones(len(faces)) if density is None else density
     labels = _directions(vertices, faces)
-    charts = _charts(faces, labels)
+    charts = _charts(faces, labels if regions is None else labels + 6 * regions)
     uv, faces_uv = _lay_out(vertices, faces, labels, charts, density, size)
     hidden = _overlapped(uv, faces_uv, size)
     if hidden.any():
@@ -101,6 +105,7 @@ def _lay_out(
     count = charts.max() + 1
     wanted = np.bincount(charts, density, count) / np.bincount(charts, minlength=count)
     flat *= wanted[charts][:, None, None]
+    flat = _upright(flat, charts, count)
     lower = np.full((count, 2), np.inf)
     upper = np.full((count, 2), -np.inf)
     np.minimum.at(lower, charts, flat.min(1))
@@ -113,6 +118,25 @@ def _lay_out(
     _, first, inverse = np.unique(keys, axis=0, return_index=True, return_inverse=True)
     uv = place.reshape(-1, 2)[first] / size
     return uv.astype(np.float32), inverse.reshape(-1, 3).astype(np.int32)
+
+
+def _upright(flat: np.ndarray, charts: np.ndarray, count: int) -> np.ndarray:
+    """Each chart's corners (F, 3, 2) turned by the angle, of 18, at which its box is smallest, and wider than tall."""
+    angles = np.pi * np.arange(18) / 36
+    best, angle = np.full(count, np.inf), np.zeros(count)
+    for candidate in angles:
+        turn = np.array([[np.cos(candidate), np.sin(candidate)], [-np.sin(candidate), np.cos(candidate)]])
+        turned = flat @ turn
+        lower, upper = np.full((count, 2), np.inf), np.full((count, 2), -np.inf)
+        np.minimum.at(lower, charts, turned.min(axis=1))
+        np.maximum.at(upper, charts, turned.max(axis=1))
+        wide, tall = (upper - lower).T
+        smaller = wide * tall < best * (1 - 1e-9)
+        best[smaller] = (wide * tall)[smaller]
+        angle[smaller] = np.where(tall > wide, candidate + np.pi / 2, candidate)[smaller]
+    cos, sin = np.cos(angle)[charts][:, None], np.sin(angle)[charts][:, None]
+    x, y = flat[..., 0], flat[..., 1]
+    return np.stack([x * cos - y * sin, x * sin + y * cos], axis=-1)
 
 
 def _pack(extent: np.ndarray, size: int) -> tuple[float, np.ndarray]:

@@ -26,7 +26,7 @@ from reperform.nodes.studio.actor_paint import Rgb, colours
 from reperform.nodes.studio.actor_parts import Costume, costume_parts
 from reperform.nodes.studio.actor_skeleton import BONE
 
-VOXEL = 0.006
+VOXEL = 0.007
 FACES = 11000
 ATLAS = 1024
 LOWER = np.array([-0.68, -0.02, -0.40])
@@ -42,6 +42,14 @@ _SKIN: tuple[Rgb, ...] = (
 _DARK_SKIN: tuple[Rgb, ...] = (
     (0.55, 0.37, 0.27), (0.58, 0.33, 0.24), (0.36, 0.22, 0.16), (0.50, 0.23, 0.21), (0.07, 0.05, 0.05), (0.18, 0.11, 0.07),
 )  # fmt: skip
+_PALE_SKIN: tuple[Rgb, ...] = (
+    (0.88, 0.70, 0.58),
+    (0.86, 0.58, 0.48),
+    (0.64, 0.43, 0.34),
+    (0.74, 0.46, 0.40),
+    (0.34, 0.22, 0.12),
+    (0.25, 0.34, 0.40),
+)
 _PALETTES: dict[str, dict[str, tuple[Rgb, ...]]] = {
     "skirt": {
         "skin": _SKIN, "hair": ((0.16, 0.09, 0.05), (0.45, 0.27, 0.14)),
@@ -52,13 +60,13 @@ _PALETTES: dict[str, dict[str, tuple[Rgb, ...]]] = {
     },
     "dress": {
         "skin": _DARK_SKIN, "hair": ((0.05, 0.04, 0.04), (0.18, 0.13, 0.11)),
-        "top": ((0.55, 0.10, 0.18), (0.36, 0.05, 0.12), (0.96, 0.80, 0.72), (0.93, 0.72, 0.20), (0.94, 0.52, 0.28)),
+        "bodice": ((0.55, 0.10, 0.18), (0.36, 0.05, 0.12), (0.96, 0.80, 0.72), (0.93, 0.72, 0.20), (0.94, 0.52, 0.28), (0.55, 0.37, 0.27)),
         "skirt": ((0.55, 0.10, 0.18), (0.36, 0.05, 0.12), (0.96, 0.80, 0.72), (0.93, 0.72, 0.20), (0.94, 0.52, 0.28)),
         "shoe": ((0.80, 0.62, 0.34), (0.66, 0.48, 0.25), (0.25, 0.18, 0.12), (0.95, 0.86, 0.60)),
     },
     "jacket": {
-        "skin": _SKIN, "hair": ((0.33, 0.20, 0.09), (0.62, 0.43, 0.22)),
-        "coat": ((0.50, 0.38, 0.24), (0.34, 0.25, 0.15), (0.24, 0.16, 0.10), (0.93, 0.91, 0.87), (0.45, 0.22, 0.10), (0.72, 0.25, 0.22)),
+        "skin": _PALE_SKIN, "hair": ((0.33, 0.20, 0.09), (0.62, 0.43, 0.22)),
+        "coat": ((0.50, 0.38, 0.24), (0.34, 0.25, 0.15), (0.24, 0.16, 0.10), (0.93, 0.91, 0.87), (0.45, 0.22, 0.10), (0.72, 0.25, 0.22), (0.36, 0.35, 0.34)),
         "trousers": ((0.36, 0.35, 0.34), (0.25, 0.24, 0.24), (0.78, 0.72, 0.60)),
         "shoe": ((0.24, 0.13, 0.08), (0.16, 0.08, 0.05), (0.07, 0.06, 0.06), (0.70, 0.62, 0.50)),
     },
@@ -109,7 +117,9 @@ def _build(costume: Costume) -> Actor:
         + 0.9 * weights[:, BONE["head"]]
         + 0.4 * (weights[:, BONE["left_hand"]] + weights[:, BONE["right_hand"]])
     )
-    uv, faces_uv = chart_atlas(vertices, faces, ATLAS, head[faces].mean(axis=1))
+    uv, faces_uv = chart_atlas(
+        vertices, faces, ATLAS, head[faces].mean(axis=1), weights[faces].sum(axis=1).argmax(axis=1)
+    )
     image = _paint(vertices, faces, uv, faces_uv, parts, costume)
     return Actor(vertices, faces, weights, uv, faces_uv, image, garment, parts[skirt_index])
 

@@ -37,7 +37,10 @@ def colours(
             rgb[rows] = _material(points[rows], part, palette[part.material])
     fibre = noise(points, 420.0) - 0.5
     stain = noise(points, 23.0) - 0.5
-    return np.clip(rgb * (1 + 0.10 * fibre + 0.10 * stain)[:, None], 0, 1)
+    # cloth and leather are mottled at the size of a few pixels; skin and hair less
+    mottled = np.array([0.08 if part.material in ("skin", "hair") else 0.26 for part in parts])[owner]
+    mottle = noise(points + 0.37, 75.0) - 0.5
+    return np.clip(rgb * (1 + 0.16 * fibre + mottled * mottle + 0.10 * stain)[:, None], 0, 1)
 
 
 def _material(points: np.ndarray, part: Part, tones: tuple[Rgb, ...]) -> np.ndarray:
@@ -163,7 +166,7 @@ def _flowers(points: np.ndarray, part: Part, tones: tuple[Rgb, ...]) -> np.ndarr
     """Flowers of three sizes strewn over the cloth, placed in space so that they cross seams."""
     rgb = _flat(points, tones[0])
     rgb = _mix(rgb, tones[1], 0.7 * (noise(points, 11.0) > 0.62))
-    for layer, (cell, petal, heart) in enumerate(((0.085, tones[2], tones[3]), (0.062, tones[4], tones[3]))):
+    for layer, (cell, petal, heart) in enumerate(((0.080, tones[2], tones[3]), (0.055, tones[4], tones[3]))):
         place = points / cell + 7.3 * layer
         home = np.floor(place).astype(int)
         jitter = np.stack([_TABLE[tuple((home + shift).T % 32)] for shift in (0, 5, 11)], axis=1)
@@ -176,6 +179,11 @@ def _flowers(points: np.ndarray, part: Part, tones: tuple[Rgb, ...]) -> np.ndarr
     if part.name == "skirt":
         along, _ = cloth_coordinates(points, part)
         rgb = _mix(rgb, tones[1], (along < 0.035) | (np.abs(along - 0.82) < 0.012))
+    if part.name == "torso":
+        x, y, z = points.T
+        neckline = 1.415 - 0.055 * np.exp(-((x / 0.07) ** 2)) * (z > 0)
+        rgb = _mix(rgb, tones[3], (y > neckline - 0.008).astype(float))
+        rgb = _mix(rgb, tones[5], (y > neckline).astype(float))
     return rgb
 
 
@@ -194,7 +202,8 @@ def _coat(points: np.ndarray, part: Part, tones: tuple[Rgb, ...]) -> np.ndarray:
     front = z > 0.0
     opening = np.interp(y, (0.72, 0.95, 1.10, 1.42, 1.47), (0.075, 0.030, 0.016, 0.070, 0.080))
     shirt = _mix(_flat(points, tones[3]), tones[5], _stripe(x, 0.014, 0.22))
-    shirt = _mix(shirt, tones[4], (y < 0.985).astype(float))
+    shirt = _mix(shirt, tones[6], (y < 0.985).astype(float))
+    shirt = _mix(shirt, tones[2], (np.abs(y - 0.99) < 0.018).astype(float))
     inside = front * np.clip((opening - np.abs(x)) / 0.003, 0, 1)
     lapel = front * np.clip(1 - np.abs(np.abs(x) - opening - 0.022) / 0.024, 0, 1) * (y > 1.08)
     rgb = _mix(rgb, tones[2], 0.75 * np.clip(4 * lapel, 0, 1))
@@ -222,6 +231,6 @@ def _shoe(points: np.ndarray, tones: tuple[Rgb, ...]) -> np.ndarray:
     x, y, z = points.T
     rgb = _mix(_flat(points, tones[0]), tones[1], 1.2 * (noise(points, 35.0) - 0.45))
     rgb = _mix(rgb, tones[2], (y < 0.017).astype(float))
-    laces = (np.abs(np.abs(x) - 0.127) < 0.020) & (z > 0.02) & (z < 0.10) & (y > 0.05)
+    laces = (np.abs(np.abs(x) - 0.127) < 0.020) & (z > 0.02) & (z < 0.10) & (y > 0.05) & (y < 0.105)
     rgb = _mix(rgb, tones[3], laces * _stripe(z, 0.016, 0.35))
     return _mix(rgb, tones[3], 0.9 * _stripe(y, 0.115, 0.05, 0.25) * (y > 0.12))

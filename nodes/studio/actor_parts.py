@@ -23,7 +23,7 @@ def _ellipsoid(
 def _torso(material: str, width: float, depth: float, girth: float) -> list[Part]:
     """Hips to neck. `girth` is the cloth's thickness over the skin."""
     heights = (0.79, 0.86, 0.93, 1.00, 1.08, 1.16, 1.25, 1.32, 1.375, 1.415, 1.45, 1.50)
-    half_x = (0.105, 0.152, 0.166, 0.152, 0.130, 0.136, 0.149, 0.156, 0.160, 0.135, 0.078, 0.054)
+    half_x = (0.105, 0.152, 0.166, 0.152, 0.130, 0.136, 0.149, 0.156, 0.150, 0.120, 0.078, 0.054)
     half_z = (0.085, 0.112, 0.119, 0.106, 0.092, 0.097, 0.106, 0.102, 0.088, 0.070, 0.058, 0.054)
     shift = (0.0, -0.004, -0.012, -0.006, 0.0, 0.003, 0.006, 0.0, -0.010, -0.015, -0.018, -0.016)
     t = tuple((y - heights[0]) / (heights[-1] - heights[0]) for y in heights)
@@ -47,7 +47,7 @@ def _head() -> list[Part]:
         _ellipsoid("jaw", skin, "head", (0, 1.542, 0.048), (0.042, 0.034, 0.042), 0.03),
         _ellipsoid("chin", skin, "head", (0, 1.523, 0.078), (0.018, 0.014, 0.014), 0.02),
         _ellipsoid("brow", skin, "head", (0, 1.632, 0.080), (0.050, 0.012, 0.014), 0.02),
-        Part("nose", skin, ("head",), (0, 1.624, 0.090), (0, 1.584, 0.112), stations=(0, 0.7, 1),
+        Part("nose", skin, ("head",), (0, 1.624, 0.090), (0, 1.585, 0.107), stations=(0, 0.7, 1),
              half_u=(0.008, 0.012, 0.014), half_w=(0.010, 0.010, 0.008), blend=0.014),
         _ellipsoid("lips", skin, "head", (0, 1.556, 0.092), (0.022, 0.011, 0.009), 0.012),
         _ellipsoid("left_ear", skin, "head", (0.074, 1.600, 0.004), (0.009, 0.030, 0.018), 0.008),
@@ -84,15 +84,15 @@ def _arm(sleeve: str, upper: float, lower: float, cuff: float) -> list[Part]:
     """Left arm; `upper`, `lower`: cloth over the skin; the sleeve ends at `cuff` of the forearm (0: at the
     elbow).
     """
-    shoulder, elbow, wrist = (0.160, 1.405, -0.012), (0.343, 1.186, -0.012), (0.502, 0.999, 0.006)
+    shoulder, elbow, wrist = (0.152, 1.408, -0.012), (0.343, 1.186, -0.012), (0.502, 0.999, 0.006)
     tip: Point = (0.566, 0.918, 0.018)
     side: Point = (0.766, 0.643, 0.0)
     end: Point = tuple(e + (cuff + 0.02) * (w - e) for e, w in zip(elbow, wrist, strict=True))  # type: ignore[assignment]
     parts = [
-        _ellipsoid("left_shoulder", sleeve, "left_arm", (0.158, 1.388, -0.012),
-                   (0.056 + upper, 0.052 + upper, 0.054 + upper), 0.04, up=(-0.5, 0.86, 0)),
-        Part("left_upper_arm", sleeve, ("left_arm",), shoulder, elbow, side, (0, 0.2, 0.6, 1),
-             tuple(r + upper for r in (0.046, 0.049, 0.043, 0.038)), tuple(r + upper for r in (0.046, 0.051, 0.045, 0.039)),
+        _ellipsoid("left_shoulder", sleeve, "left_arm", (0.148, 1.372, -0.012),
+                   (0.054 + upper, 0.050 + upper, 0.054 + upper), 0.05, up=(-0.5, 0.86, 0)),
+        Part("left_upper_arm", sleeve, ("left_arm",), shoulder, elbow, side, (0, 0.15, 0.3, 0.6, 1),
+             tuple(r + upper for r in (0.024, 0.044, 0.048, 0.043, 0.038)), tuple(r + upper for r in (0.024, 0.046, 0.051, 0.045, 0.039)),
              blend=0.03),
         _ellipsoid("left_elbow", sleeve, "left_forearm", (0.343, 1.186, -0.013), (0.038 + upper,) * 3, 0.01),
         Part("left_forearm", "skin", ("left_forearm",), (0.338, 1.192, -0.012), wrist, side, (0, 0.25, 0.7, 1),
@@ -174,7 +174,7 @@ def _skirt(
         "skirt", material, ("hips", "left_thigh", "right_thigh"), (0, top, -0.004), (0, hem, -0.004), stations=stations,
         half_u=tuple(waist[0] + (wide[0] - waist[0]) * g for g in grow),
         half_w=tuple(waist[1] + (wide[1] - waist[1]) * g for g in grow),
-        folds=folds, fold_depth=tuple(depth * d for d in (0.0, 0.1, 0.35, 0.7, 1.0)), fold_phase=0.7, blend=0.012,
+        folds=folds, fold_depth=tuple(depth * d for d in (0.0, 0.1, 0.35, 0.7, 1.0)), fold_phase=0.7, blend=0.03,
         looseness=(0.0, 0.05, 0.25, 0.62, 1.0),
     )  # fmt: skip
     rise = min(0.16, 0.45 * (top - hem))
@@ -196,20 +196,20 @@ def costume_parts(costume: Costume) -> tuple[Part, ...]:
         bust = [_ellipsoid(f"{side}_bust", "top", "chest", (x, 1.268, 0.074), (0.066, 0.064, 0.052), 0.04)
                 for side, x in (("left", 0.066), ("right", -0.066))]  # fmt: skip
         body = [*_torso("top", 0.97, 1.0, 0.004), *bust]
-        hair = _hair_bob()
+        head, hair = [part for part in _head() if not part.name.endswith("ear")], _hair_bob()
     elif costume == "dress":
         garment = _skirt(1.110, 0.235, (0.130, 0.094), (0.335, 0.305), 12, 0.085, "skirt")
-        arm, leg = _arm("top", 0.010, 0.004, 0.0), _leg("skin", 0.0, 0.0, 0.0, 0.0, 0.0)
-        bust = [_ellipsoid(f"{side}_bust", "top", "chest", (x, 1.268, 0.074), (0.068, 0.066, 0.054), 0.04)
+        arm, leg = _arm("bodice", 0.010, 0.004, 0.0), _leg("skin", 0.0, 0.0, 0.0, 0.0, 0.0)
+        bust = [_ellipsoid(f"{side}_bust", "bodice", "chest", (x, 1.268, 0.074), (0.068, 0.066, 0.054), 0.04)
                 for side, x in (("left", 0.067), ("right", -0.067))]  # fmt: skip
-        body = [*_torso("top", 0.95, 0.98, 0.003), *bust]
-        hair = _hair_bun()
+        body = [*_torso("bodice", 0.95, 0.98, 0.003), *bust]
+        head, hair = _head(), _hair_bun()
     else:
         garment = _skirt(1.150, 0.735, (0.158, 0.122), (0.225, 0.188), 7, 0.055, "coat")
         arm, leg = _arm("coat", 0.015, 0.017, 0.93), _leg("trousers", 0.012, 0.014, 0.012, 0.0, 0.0)
         body = [*_torso("coat", 1.03, 1.06, 0.016),
                 _ellipsoid("collar", "coat", "chest", (0, 1.432, -0.022), (0.090, 0.036, 0.078), 0.02)]  # fmt: skip
-        hair = _hair_short()
+        head, hair = _head(), _hair_short()
     limbs = [*leg, *_mirrored(leg)]
     arms = [*arm, *_mirrored(arm)]
-    return (*body, *garment, *limbs, *arms, *_head(), *hair)
+    return (*body, *garment, *limbs, *arms, *head, *hair)

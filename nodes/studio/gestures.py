@@ -78,10 +78,10 @@ def jump(stand: Plan, time: np.ndarray, seconds: float, height: float, length: f
         time,
         [
             (0, 0),
-            (off - push, -0.85),
-            (off + 0.05, high),
-            (land, 0.7),
-            (land + push, 0.2),
+            (off - push - 0.10, -0.75),
+            (off + 0.14, high),
+            (max(land, off + 0.24), 0.7),
+            (max(land, off + 0.24) + push, 0.2),
             (land + push + settle, 0),
         ],
     )
@@ -139,7 +139,7 @@ def reach_low(stand: Plan, time: np.ndarray, seconds: float, amount: float) -> P
     zero = np.zeros_like(go)
     arms = stand.arms.copy()
     arms[:, 1, 0] += 1.15 * bend + 0.25 * go
-    arms[:, 0, 0] += -0.25 * bend
+    arms[:, 0, 0] += 0.75 * bend
     arms[:, 1, 3] *= 1 - 0.7 * go
     return stand._replace(
         arms=arms,

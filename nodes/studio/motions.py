@@ -16,34 +16,27 @@ Motion = Literal[
     "jog_to_walk", "jump_high", "jump_low", "jump_long", "jump_short", "reach_high", "reach_low", "punch", "duck",
     "dance",
 ]  # fmt: skip
-# samples per second of the plan, and the seconds planned before and after the take
-RATE = 200
-MARGIN = 3.0
+# seconds planned before and after the take, so that footsteps and cloth have a past and a future
+MARGIN = 2.0
 
 
 def plan_motion(
-    motion: Motion,
-    seconds: float,
-    walk: float,
-    jog: float,
-    turn: float,
-    phase: float,
-    height: float,
+    motion: Motion, seconds: float, rate: float, walk: float, jog: float, turn: float, phase: float, height: float,
     length: float,
-) -> Plan:
-    """The plan of a take at RATE from -MARGIN to seconds + MARGIN; height and length in m at the reference stature,
+) -> Plan:  # fmt: skip
+    """The plan of a take, `rate` samples a second from -MARGIN to seconds + MARGIN; height and length in m at the reference stature,
     0: the motion's own.
     """
-    time = np.arange(-round(MARGIN * RATE), round((seconds + MARGIN) * RATE) + 1) / RATE
-    start = round(MARGIN * RATE)
+    start = round(MARGIN * rate)
+    time = np.arange(-start, round((seconds + MARGIN) * rate) + 1) / rate
     speed = _speed(motion, time, seconds, walk, jog)
-    rate = {"turn_left": turn, "turn_right": -turn}.get(motion, 0.0)
+    turning = {"turn_left": turn, "turn_right": -turn}.get(motion, 0.0)
     if motion == "walk_to_stand":
         stop = int(np.argmax(time >= seconds))
-        phase = _phase_that_stops(speed, start, stop, phase)
+        phase = _phase_that_stops(speed[start : stop + 1], rate, phase)
     elif not speed[start] > 0:
         phase = RESTING_PHASE
-    plan = locomotion(time, speed, np.full(len(time), rate), phase, start)
+    plan = locomotion(time, speed, np.full(len(time), turning), phase, start)
     return _gesture(motion, plan, time, seconds, height, length)
 
 
@@ -108,9 +101,9 @@ def _speed(motion: Motion, time: np.ndarray, seconds: float, walk: float, jog: f
             return np.zeros_like(time)
 
 
-def _phase_that_stops(speed: np.ndarray, start: int, stop: int, wanted: float) -> float:
+def _phase_that_stops(speed: np.ndarray, rate: float, wanted: float) -> float:
     """The phase at the take's start nearest `wanted` that ends with both feet on the ground, just planted."""
-    cadence = style_at(speed).cadence[start : stop + 1]
-    advance = float((0.5 * (cadence[1:] + cadence[:-1])).sum() / RATE)
+    cadence = style_at(speed).cadence
+    advance = float((0.5 * (cadence[1:] + cadence[:-1])).sum() / rate)
     exact = RESTING_PHASE - advance
     return exact + 0.5 * round((wanted - exact) / 0.5)

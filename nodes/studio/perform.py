@@ -14,8 +14,11 @@ from reperform.nodes.studio.actor import build_actor
 from reperform.nodes.studio.actor_parts import Costume
 from reperform.nodes.studio.actor_skeleton import NAMES, PARENTS, REFERENCE_STATURE, REST_JOINTS
 from reperform.nodes.studio.garment import garment_displacement
-from reperform.nodes.studio.motions import MARGIN, RATE, Motion, plan_motion
+from reperform.nodes.studio.motions import MARGIN, Motion, plan_motion
 from reperform.nodes.studio.pose_plan import Plan, solve
+
+# the plan is sampled at the multiple of the frame rate next above this (Hz)
+FINEST = 100.0
 
 
 @node(over="take", memory=1.0)
@@ -54,16 +57,17 @@ def perform(
     not public.
     """
     size = stature / REFERENCE_STATURE
+    finer = int(np.ceil(FINEST / fps))
     plan = plan_motion(
-        motion, seconds, walk_speed / size, jog_speed / size, turn, phase, height / size, length / size
-    )
-    frames = round(MARGIN * RATE) + np.round(np.arange(max(2, round(seconds * fps))) * RATE / fps).astype(int)
+        motion, seconds, fps * finer, walk_speed / size, jog_speed / size, turn, phase, height / size, length / size
+    )  # fmt: skip
+    frames = round(MARGIN * fps * finer) + finer * np.arange(max(2, round(seconds * fps)))
     plan = _centred(plan, frames, heading)
     rotation, joints = solve(plan)
     translation = joints - np.einsum("tbij,bj->tbi", rotation, REST_JOINTS)
     actor = build_actor(costume)
     vertices = skin_dual_quaternion(actor.vertices, actor.weights, rotation[frames], translation[frames])
-    vertices += garment_displacement(actor, rotation, translation, joints, 1 / RATE, frames)
+    vertices += garment_displacement(actor, rotation, translation, joints, 1 / (fps * finer), frames)
     rate = np.array(fps, np.float32)
     return Performance(
         MeshSequence((vertices * size).astype(np.float32), actor.faces, rate),

@@ -76,7 +76,7 @@ def twin(
 
 def _load(path: Path, wanted: tuple[str, ...]) -> Arrays:
     try:
-        with np.load(path, allow_pickle=False) as stored:
+        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as stored:
             missing = [name for name in wanted if name not in stored]
             if missing:
                 raise ValueError(
