@@ -6,7 +6,8 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from reperform.graphs.engine import Engine, Progress
+from reperform.graphs.engine import Engine
+from reperform.graphs.listener import Progress
 from reperform.graphs.pipeline import Pipeline, read_pipeline
 from reperform.graphs.report import RunReport
 from reperform.storage.store import Store

@@ -239,7 +239,8 @@ class _Inputs:
                 1 if text else int(np.prod(unit.shape(name, frame), dtype=float)) * unit.dtype(name).itemsize
             )
             wanted = wanted[: max(1, READ_AHEAD // max(1, size))]
-            keep = {key: value for key, value in ahead.items() if key[1] >= frame - 8}
+            low = self._batch.items[position].window
+            keep = {key: value for key, value in ahead.items() if key[1] >= (low[0] if low else frame)}
             arrays = unit.frames(name, wanted, camera)
             self._ahead[f"{feed.port}.{name}"] = ahead = keep | {
                 (name, k, camera): array for k, array in zip(wanted, arrays, strict=True)

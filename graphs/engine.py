@@ -6,14 +6,17 @@ executor in batches; every outcome is committed before the next is looked at.
 
 from __future__ import annotations
 
+import errno
 import os
 import time
 from collections import deque
 from collections.abc import Sequence
-from typing import Any, Protocol
+from typing import Any
 
 from reperform.graphs.errors import RunError
+from reperform.graphs.listener import Progress, Silent
 from reperform.graphs.messages import Batch
+from reperform.graphs.pace import Pace, memory
 from reperform.graphs.pipeline import Pipeline
 from reperform.graphs.report import RunReport, step_reports
 from reperform.graphs.resolve import Resolver
@@ -22,42 +25,6 @@ from reperform.storage.digest import digest_bytes
 from reperform.storage.errors import DamagedResult, StoreError
 from reperform.storage.index import Manifest, Records, Result, Segment
 from reperform.storage.store import Store
-
-BATCH_SECONDS = 0.5
-BATCH_ITEMS = 512
-BATCH_BYTES = 64 << 20
-
-
-class Progress(Protocol):
-    """Who is told how far the work is."""
-
-    def start(self, step: str, total: int) -> None:
-        """A step has so many items (more)."""
-
-    def advance(self, step: str, computed: int = 1, cached: int = 0, failed: int = 0) -> None:
-        """So many of them are over."""
-
-    def finish(self, step: str) -> None:
-        """A step is over."""
-
-    def note(self, text: str) -> None:
-        """Something that a user should know."""
-
-
-class Silent:
-    """Nobody is told."""
-
-    def start(self, step: str, total: int) -> None:
-        """Say nothing."""
-
-    def advance(self, step: str, computed: int = 1, cached: int = 0, failed: int = 0) -> None:
-        """Say nothing."""
-
-    def finish(self, step: str) -> None:
-        """Say nothing."""
-
-    def note(self, text: str) -> None:
-        """Say nothing."""
 
 
 class Engine:
@@ -85,10 +52,13 @@ class Engine:
         self.units: dict[Name, Unit] = {}
         self._ready: deque[Unit] = deque()
         self._open: deque[Unit] = deque()
-        self._in_flight: dict[int, tuple[Unit, list[int]]] = {}
+        self._in_flight: dict[int, tuple[Unit, Work, list[int]]] = {}
         self._load: list[float] = [0.0, 0.0]
         self._tag = 0
-        self._pace: dict[str, tuple[float | None, float | None]] = {}
+        self._pace = Pace(store.index)
+        # units whose results lie in a segment that was found damaged
+        self._broken: dict[str, set[Name]] = {}
+        self._store_error: str | None = None
         self._closed: set[str] = set()
         self.notes: list[str] = []
         self._make_units()
@@ -136,9 +106,12 @@ class Engine:
             self.pipeline.name, time.perf_counter() - start, step_reports(self.chosen, self.units)
         )
         self._remember()
+        if self._store_error:
+            raise StoreError(errno.EIO, self._store_error)
         failures = [error for unit in self.units.values() for error in unit.errors]
         if failures:
-            raise RunError("\n".join(failures[:20]), report)
+            more = [f"... and {len(failures) - 20} more failures"] if len(failures) > 20 else []
+            raise RunError("\n".join(failures[:20] + more), report)
         return report
 
     def _resolve(self, unit: Unit) -> None:
@@ -266,11 +239,11 @@ class Engine:
         if not self._in_flight:
             return True
         return (
-            self._load[0] + node.threads <= self._executor.slots and self._load[1] + node.memory <= _memory()
+            self._load[0] + node.threads <= self._executor.slots and self._load[1] + node.memory <= memory()
         )
 
     def _send(self, unit: Unit, work: Work) -> None:
-        size = self._batch_size(unit.step.node.name, len(work.queue))
+        size = self._pace.batch_size(unit.step.node.name, len(work.queue), self._executor.slots)
         positions = [work.queue.popleft() for _ in range(min(size, len(work.queue)))]
         keys = work.keys if work.outputs is not None else [work.keys[k] for k in positions]
         mine, done = self.store.claim(keys)
@@ -305,26 +278,11 @@ class Engine:
             node.threads,
         )
         self._tag += 1
-        self._in_flight[self._tag] = (unit, positions)
+        self._in_flight[self._tag] = (unit, work, positions)
         self._load[0] += node.threads
         self._load[1] += node.memory
         work.running += 1
         self._executor.submit(self._tag, batch)
-
-    def _batch_size(self, node: str, waiting: int) -> int:
-        """How many items make about half a second of work; one each until the pace is known."""
-        if node not in self._pace:
-            self._pace[node] = (
-                self.store.index.seconds_per_item(node),
-                self.store.index.bytes_per_item(node),
-            )
-        seconds, size = self._pace[node]
-        if seconds is None or size is None:
-            return max(1, min(8, waiting // (4 * self._executor.slots)))
-        fair = -(-waiting // self._executor.slots)
-        return max(
-            1, int(min(BATCH_SECONDS / max(seconds, 1e-6), BATCH_BYTES / max(size, 1), BATCH_ITEMS, fair))
-        )
 
     def _waits_elsewhere(self) -> bool:
         return not self._stopping and any(unit.work and unit.work.elsewhere for unit in self._open)
@@ -347,16 +305,18 @@ class Engine:
                     unit.work.elsewhere.clear()
 
     def _take(self, tag: int, outcome: Any) -> None:
-        unit, positions = self._in_flight.pop(tag)
-        node, work = unit.step.node, unit.work
+        unit, work, positions = self._in_flight.pop(tag)
+        node = unit.step.node
         self._load[0] -= node.threads
         self._load[1] -= node.memory
-        if work is None:
-            return
         work.running -= 1
         if outcome.store_error:
-            self._stopping = True
-            raise StoreError(outcome.store_error)
+            # what else is in flight may still come to a good end
+            self._stopping, self._store_error = True, outcome.store_error
+            return
+        if unit.work is not work:
+            # sent back meanwhile to wait for a damaged input
+            return
         if outcome.damaged:
             self._mend(unit, *outcome.damaged)
             return
@@ -372,7 +332,7 @@ class Engine:
             rows = sum(item.segment == k for item in good)
             share = seconds if len(outcome.segments) == 1 else seconds / len(outcome.segments)
             records.segments.append(Segment(name, unit.step.node.name, rows, size, share, stamp))
-            self._pace[unit.step.node.name] = (share / max(rows, 1), size / max(rows, 1))
+            self._pace.measured(unit.step.node.name, rows, share, size)
         for key, item in zip(keys, outcome.items, strict=True):
             if item.error is None:
                 records.results[key] = Result(outcome.segments[item.segment][0], item.row, item.tables)
@@ -426,33 +386,43 @@ class Engine:
 
     def _mend(self, unit: Unit, segment: str, rows: Any, reason: str) -> None:
         """An input turned out damaged: forget it, make it again, then come back to this unit."""
+        known = self._broken.setdefault(segment, set())
         if segment.startswith("manifests/"):
-            broken = [
+            found = [
                 u for u in self.units.values() if any(segment.endswith(m.name) for m in u.manifests.values())
             ]
-            self.store.index.drop_manifests([m.key for u in broken for m in u.manifests.values()])
+            self.store.index.drop_manifests([m.key for u in found for m in u.manifests.values()])
             self._note([f"damaged manifest {segment}: {reason}; it is made again"])
         else:
-            broken = [
-                u
-                for u in self.units.values()
-                if u.manifests
-                and any(segment in self.store.index.segments_of(m.key) for m in u.manifests.values())
-            ]
+            found = [u for u in self.units.values() if segment in self._segments(u)]
             self._note([f"{self.store.forget(segment, rows)} ({reason})"])
+            # one look at all that the input names, so that one unit is not sent back for every chunk of a bad disk
+            for other in sorted({name for u in found for name in self._segments(u)} - {segment}):
+                broken = self.store.damaged_rows(other)
+                if broken != []:
+                    self._note([self.store.forget(other, broken)])
+        known |= {u.name for u in found}
         unit.mended += 1
-        if unit.mended > 3 or not broken:
+        if unit.mended > 5 or not known:
             self._fail(
                 unit,
                 f"step {unit.item_text!r}: an input is damaged again and again ({reason}): check the disk",
             )
             return
         unit.status, unit.work = "waiting", None
-        for source in broken:
-            unit.missing.add(source.name)
+        for name in known:
+            unit.missing.add(name)
+            source = self.units[name]
             if source.status == "done":
                 source.status, source.mended = "waiting", source.mended + 1
                 self._ready.append(source)
+
+    def _segments(self, unit: Unit) -> set[str]:
+        return {
+            name
+            for manifest in unit.manifests.values()
+            for name in self.store.index.segments_of(manifest.key)
+        }
 
     def _close_step(self, step: str) -> None:
         if step not in self._closed and all(
@@ -487,8 +457,3 @@ class Engine:
 
 def _output_key(key: bytes, take: str) -> bytes:
     return digest_bytes(key, take.encode())
-
-
-def _memory() -> float:
-    """GB of memory that batches in flight may declare together."""
-    return 0.8 * os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") / 1e9

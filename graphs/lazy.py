@@ -24,7 +24,7 @@ class LazyField:
 
     def __len__(self) -> int:
         axes = self._spec.items
-        return self._unit.contents.lengths[axes[0]] if axes else len(self._unit.constant(self._name))
+        return self._unit.contents.lengths[axes[0]] if axes else int(self.shape[0])
 
     def __iter__(self) -> Iterator[Any]:
         return (self[k] for k in range(len(self)))
@@ -59,6 +59,12 @@ class LazyField:
             )
         array = self.read()
         return array if dtype is None else array.astype(dtype)
+
+    def __float__(self) -> float:
+        return float(np.asarray(self))
+
+    def __int__(self) -> int:
+        return int(np.asarray(self))
 
     def read(self) -> Any:
         """The whole field: an array, or a `Ragged`."""

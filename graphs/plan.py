@@ -10,6 +10,7 @@ from reperform.graphs.engine import Engine
 from reperform.graphs.history import differences
 from reperform.graphs.pipeline import Pipeline
 from reperform.graphs.unit import Unit
+from reperform.storage.errors import DamagedResult
 from reperform.storage.store import Store
 
 
@@ -74,7 +75,7 @@ def _walk(engine: Engine, store: Store) -> Iterator[tuple[Unit, int, int, list[s
                 reasons = (
                     (differences(before, unit.parts) or ["its stored result is gone"]) if missing else []
                 )
-            except ValueError as error:
+            except (ValueError, DamagedResult) as error:
                 missing, total, reasons = 1, 1, [str(error)]
             if missing and unit.step.node.volatile:
                 reasons = ["it measures, so it always runs"]

@@ -37,6 +37,13 @@ class RunReport:
         return {"pipeline": self.pipeline, "seconds": round(self.seconds, 4), "steps": steps}
 
 
+def _skipped(unit: Unit) -> int:
+    """Items of a unit that were never tried; one, where it is not known how many there are."""
+    if unit.work is not None and unit.status in ("open", "failed"):
+        return len(unit.work.items) - unit.computed - unit.cached - unit.failed
+    return int(unit.status in ("skipped", "waiting"))
+
+
 def step_reports(chosen: Sequence[str], units: Mapping[Name, Unit]) -> dict[str, StepReport]:
     """Sums over the units of every chosen step."""
     sums: dict[str, list[float]] = {name: [0, 0, 0, 0, 0.0] for name in chosen}
@@ -45,7 +52,7 @@ def step_reports(chosen: Sequence[str], units: Mapping[Name, Unit]) -> dict[str,
         row[0] += unit.computed
         row[1] += unit.cached
         row[2] += unit.failed
-        row[3] += unit.status in ("skipped", "waiting", "open")
+        row[3] += _skipped(unit)
         row[4] += unit.seconds
     return {
         name: StepReport(int(c + k + f + s), int(c), int(k), int(f), int(s), seconds)

@@ -5,6 +5,7 @@ Only the coordinating process of a run writes here, in batches, one transaction 
 
 from __future__ import annotations
 
+import errno
 import json
 import sqlite3
 import time
@@ -12,6 +13,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
+
+from reperform.storage.errors import StoreError
 
 SCHEMA = """
 CREATE TABLE IF NOT EXISTS results (
@@ -73,15 +76,62 @@ class Records:
     manifests: list[tuple[Manifest, Sequence[str]]] = field(default_factory=list)
 
 
+class _Connection(sqlite3.Connection):
+    """A connection whose errors are told as errors of the store, with their cure."""
+
+    def execute(self, *arguments: Any) -> sqlite3.Cursor:
+        try:
+            return super().execute(*arguments)
+        except sqlite3.DatabaseError as error:
+            raise _explained(error) from error
+
+    def executemany(self, *arguments: Any) -> sqlite3.Cursor:
+        try:
+            return super().executemany(*arguments)
+        except sqlite3.DatabaseError as error:
+            raise _explained(error) from error
+
+
+def _explained(error: sqlite3.DatabaseError) -> StoreError:
+    cures = {
+        sqlite3.SQLITE_FULL: "the disk is full: free space or run `reperform store gc`, then run again; finished items are kept",
+        sqlite3.SQLITE_IOERR: "the disk failed or is full: mend the cause, then run again; finished items are kept",
+        sqlite3.SQLITE_READONLY: "no permission to write there: choose another place with --store",
+        sqlite3.SQLITE_BUSY: "another run holds it for more than a minute: look for one that hangs",
+        sqlite3.SQLITE_CORRUPT: "it is damaged: delete index.sqlite in the store; results are then computed again",
+        sqlite3.SQLITE_NOTADB: "it is no index: delete index.sqlite in the store; results are then computed again",
+    }
+    code = getattr(error, "sqlite_errorcode", 0) & 0xFF
+    cure = cures.get(code, "check the folder of the store and its permissions")
+    return StoreError(errno.EIO, f"the index of the store cannot be used ({error}): {cure}")
+
+
 class Index:
     """The index in one SQLite file."""
 
     def __init__(self, path: Path | str) -> None:
-        self._db = sqlite3.connect(path, timeout=60, isolation_level=None, check_same_thread=False)
-        self._db.execute("PRAGMA journal_mode=WAL")
+        self._path = path
+        self._db = sqlite3.connect(
+            path, timeout=60, isolation_level=None, check_same_thread=False, factory=_Connection
+        )
+        for attempt in range(100):
+            try:
+                self._db.execute("PRAGMA journal_mode=WAL")
+                break
+            except StoreError:
+                # SQLite does not wait here while another run, as new as this one, makes the same change
+                if attempt == 99:
+                    raise
+                time.sleep(0.05)
         self._db.execute("PRAGMA synchronous=NORMAL")
         if not self._db.execute("SELECT 1 FROM sqlite_master WHERE name='exports'").fetchone():
-            self._db.executescript(SCHEMA)
+            with self._transaction():
+                for statement in SCHEMA.split(";")[:-1]:
+                    self._db.execute(statement)
+
+    def reopen(self) -> Index:
+        """Another connection, for another thread."""
+        return Index(self._path)
 
     def close(self) -> None:
         """Close the file."""
@@ -310,4 +360,7 @@ class _Transaction:
         self._db.execute("BEGIN IMMEDIATE")
 
     def __exit__(self, kind: object, *_: object) -> None:
-        self._db.execute("COMMIT" if kind is None else "ROLLBACK")
+        if kind is None:
+            self._db.execute("COMMIT")
+        elif self._db.in_transaction:
+            self._db.execute("ROLLBACK")

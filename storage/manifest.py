@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import io
 import json
+import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
@@ -97,7 +98,7 @@ class StoredUnit:
         self.name = name
         try:
             self.contents = Contents.from_bytes(self._shelf.read_manifest(name))
-        except (*UNREADABLE, EOFError) as error:
+        except (*UNREADABLE, EOFError, zipfile.BadZipFile) as error:
             raise DamagedResult(f"manifests/{name}", None, str(error)) from error
 
     def frames(self, field: str, frames: Sequence[int], camera: int | None = None) -> list[np.ndarray]:

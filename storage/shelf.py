@@ -10,6 +10,7 @@ import errno
 import functools
 import os
 import shutil
+import sys
 import uuid
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -29,6 +30,9 @@ class Shelf:
     def __init__(self, url: str) -> None:
         self.url = url
         self.folder: Path | None = None if is_remote(url) else Path(url)
+
+    def prepare(self) -> None:
+        """Make the folders of a local shelf."""
         if self.folder is not None:
             (self.folder / SEGMENTS).mkdir(parents=True, exist_ok=True)
             (self.folder / MANIFESTS).mkdir(exist_ok=True)
@@ -38,7 +42,9 @@ class Shelf:
         """The fsspec file system and the path of the store in it."""
         import fsspec
 
-        return fsspec.core.url_to_fs(self.url)
+        # listings must show what other machines wrote a moment ago
+        fs, root = fsspec.core.url_to_fs(self.url, use_listings_cache=False)
+        return fs, root.rstrip("/")
 
     @functools.cached_property
     def zarr_store(self) -> Any:
@@ -57,8 +63,10 @@ class Shelf:
 
         name = f"{node}/{uuid.uuid4().hex}"
         if self.folder is None:
-            size = write_segment(self.zarr_store, name, fields, by_item)
-            return name, size, ""
+            try:
+                return name, write_segment(self.zarr_store, name, fields, by_item), ""
+            except failures() as error:
+                raise _explained(error, self.url) from error
         beside = f".writing-{uuid.uuid4().hex}"
         place = self.folder / SEGMENTS
         try:
@@ -97,7 +105,11 @@ class Shelf:
         """Store the bytes of a manifest."""
         if self.folder is None:
             fs, root = self.filesystem
-            fs.pipe_file(f"{root}/{MANIFESTS}/{name}", data)
+            try:
+                fs.makedirs(f"{root}/{MANIFESTS}", exist_ok=True)
+                fs.pipe_file(f"{root}/{MANIFESTS}/{name}", data)
+            except failures() as error:
+                raise _explained(error, self.url) from error
             return
         path = self.folder / MANIFESTS / name
         beside = path.with_name(f".writing-{uuid.uuid4().hex}")
@@ -193,11 +205,33 @@ def forget_open_files() -> None:
     _open_reader.cache_clear()
 
 
-def _explained(error: OSError, url: str) -> StoreError:
+def failures() -> tuple[type[Exception], ...]:
+    """What a file system or an object store raises where it cannot be reached or written."""
+    botocore = sys.modules.get("botocore.exceptions")
+    return (OSError, botocore.BotoCoreError, botocore.ClientError) if botocore else (OSError,)
+
+
+def cannot_open(error: Exception, url: str) -> StoreError:
+    """The error of a store that does not open."""
+    reason = getattr(error, "strerror", None) or str(error)
+    cure = (
+        "check the URL, the network and the credentials"
+        if is_remote(url)
+        else "check the path and its permissions"
+    )
+    return StoreError(
+        getattr(error, "errno", None) or errno.EIO, f"store {url}: cannot open: {reason}: {cure}"
+    )
+
+
+def _explained(error: Exception, url: str) -> StoreError:
+    number = getattr(error, "errno", None) or errno.EIO
     cure = {
         errno.ENOSPC: "the disk is full: free space or run `reperform store gc`, then run again; finished items are kept",
         errno.EDQUOT: "the disk quota is used up: free space, then run again; finished items are kept",
+        errno.EFBIG: "a file grew past the limit of this process: raise it, then run again; finished items are kept",
         errno.EACCES: "no permission to write there: choose another place with --store",
         errno.EROFS: "the file system is read-only: choose another place with --store",
-    }.get(error.errno or 0, "finished items are kept; mend the cause, then run again")
-    return StoreError(error.errno, f"store {url}: cannot write: {error.strerror or error}: {cure}")
+    }.get(number, "finished items are kept; mend the cause, then run again")
+    reason = getattr(error, "strerror", None) or str(error)
+    return StoreError(number, f"store {url}: cannot write: {reason}: {cure}")

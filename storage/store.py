@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import socket
 import threading
@@ -13,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from reperform.storage.errors import UNREADABLE, StoreError
 from reperform.storage.index import Index, Manifest, Result
-from reperform.storage.shelf import is_remote, open_shelf
+from reperform.storage.shelf import cannot_open, failures, is_remote, open_shelf
 
 if TYPE_CHECKING:
     import numpy as np
@@ -31,12 +32,10 @@ class Store:
         self.url = str(url) if is_remote(str(url)) else os.path.abspath(url)
         try:
             self.shelf = open_shelf(self.url)
+            self.shelf.prepare()
             self.index = self._open_index()
-        except OSError as error:
-            raise StoreError(
-                error.errno,
-                f"store {self.url}: cannot open: {error.strerror or error}: check the path and its permissions",
-            ) from error
+        except failures() as error:
+            raise cannot_open(error, self.url) from error
         self.owner = f"{socket.gethostname()}:{os.getpid()}:{uuid.uuid4().hex[:8]}"
         self._beating: threading.Event | None = None
 
@@ -56,9 +55,11 @@ class Store:
         self._beating = stop = threading.Event()
 
         def beat() -> None:
-            index = self._open_index()
+            index = self.index.reopen()
             while not stop.wait(HEARTBEAT):
-                index.heartbeat(self.owner)
+                # a beat that fails is no harm: the next may not, and without any the claims lapse
+                with contextlib.suppress(StoreError):
+                    index.heartbeat(self.owner)
             index.close()
 
         threading.Thread(target=beat, name="claims", daemon=True).start()

@@ -1,9 +1,16 @@
 """Fixtures shared by all tests."""
 
+import itertools
+import json
 import os
+import subprocess
+import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+
+_NUMBERS = itertools.count()
 
 
 @pytest.fixture(scope="session")
@@ -16,3 +23,86 @@ def data_folder() -> Path:
             pytest.fail(reason)
         pytest.skip(reason)
     return folder
+
+
+class PlugIn:
+    """A package of nodes in a folder of its own, with the entry point of an installed distribution."""
+
+    def __init__(self, folder: Path, source: str, name: str = "demo") -> None:
+        self.folder, self.name = folder, name
+        folder.mkdir(parents=True, exist_ok=True)
+        self.module = folder / f"{name}_nodes.py"
+        self.module.write_text(source)
+        info = folder / f"{name}_nodes-1.dist-info"
+        info.mkdir(exist_ok=True)
+        (info / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}-nodes\nVersion: 1\n")
+        (info / "entry_points.txt").write_text(f"[reperform.nodes]\n{name} = {name}_nodes\n")
+
+    def edit(self, old: str, new: str) -> None:
+        """Replace text that stands once in the module."""
+        source = self.module.read_text()
+        assert source.count(old) == 1, f"{old!r} must stand once in {self.module}"
+        self.module.write_text(source.replace(old, new))
+
+
+class Command:
+    """Runs `reperform` as a process of its own in a folder, with plug-ins on its path."""
+
+    def __init__(self, folder: Path, *path: Path) -> None:
+        self.folder = folder
+        self.env = {
+            **os.environ,
+            "PYTHONPATH": os.pathsep.join([*map(str, path or (folder,)), os.environ.get("PYTHONPATH", "")]),
+            "PYTHONDONTWRITEBYTECODE": "1",
+            "COLUMNS": "200",
+        }
+
+    def start(self, *arguments: str) -> "subprocess.Popen[str]":
+        """Start it and come back."""
+        return subprocess.Popen(
+            [sys.executable, "-m", "reperform.viewer.cli", *arguments],
+            cwd=self.folder, env=self.env, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        )  # fmt: skip
+
+    def __call__(self, *arguments: str, status: int = 0) -> "subprocess.CompletedProcess[str]":
+        """Run it to the end; the exit status must be as said."""
+        process = self.start(*arguments)
+        out, err = process.communicate(timeout=120)
+        assert process.returncode == status, f"exit status {process.returncode}\n{out}\n{err}"
+        return subprocess.CompletedProcess(arguments, status, out, err)
+
+    def computed(self, *arguments: str, status: int = 0) -> dict[str, int]:
+        """Items computed by `run`, step by step."""
+        out = self("run", *arguments, "--json", status=status).stdout
+        return {name: step["computed"] for name, step in json.loads(out)["steps"].items()}
+
+
+@pytest.fixture
+def command(tmp_path: Path) -> Callable[..., Command]:
+    """Makes the command line, run in a folder (by default `tmp_path`) that is on its path for plug-ins."""
+    return lambda folder=tmp_path, *path: Command(folder, *path)
+
+
+@pytest.fixture
+def plug_in(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str], PlugIn]:
+    """Writes a plug-in from the source of its nodes and makes it importable here, under a name of its own."""
+
+    def make(source: str) -> PlugIn:
+        name = f"demo{next(_NUMBERS)}"
+        made = PlugIn(tmp_path / name, source, name)
+        monkeypatch.syspath_prepend(made.folder)
+        return made
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def new_plug_in() -> Callable[[Path, str], PlugIn]:
+    """Writes a plug-in called `demo` into a folder, for commands run as processes."""
+    return PlugIn
+
+
+@pytest.fixture(scope="session")
+def new_command() -> Callable[..., Command]:
+    """Makes the command line run in a folder."""
+    return Command
