@@ -26,7 +26,7 @@ def background_difference(
     noise: Annotated[float, Param("1/255", 0.5, 50, "deviation assumed at least")] = 3.0,
     shadow: Annotated[float, Param("1", 0, 1, "darkest shadow, as a share of the light; 1: none")] = 0.45,
     hole: Annotated[float, Param("1", 0, 0.1, "share of the picture up to which a hole is filled")] = 5e-4,
-    band: Annotated[float, Param("px", 0.5, 10, "half width of the soft edge, at width 960")] = 1.5,
+    band: Annotated[float, Param("px", 0.5, 10, "half width of the soft edge, at width 960")] = 1.0,
     smallest: Annotated[float, Param("1", 0, 0.5, "least share of the picture a performer covers")] = 2e-4,
 ) -> Mattes:
     """Soft matte of what is not on the clean plate; shadows count as the set; all 0 where nothing new is.

@@ -30,7 +30,7 @@ def chroma_key(
     reach: Annotated[
         float, Param("px", 10, 1000, "over which the backing's colour may vary, at width 960")
     ] = 40.0,
-    band: Annotated[float, Param("px", 0.5, 10, "half width of the soft edge, at width 960")] = 1.5,
+    band: Annotated[float, Param("px", 0.5, 10, "half width of the soft edge, at width 960")] = 1.0,
     smallest: Annotated[float, Param("1", 0, 0.5, "least share of the picture a performer covers")] = 2e-4,
 ) -> Mattes:
     """Soft matte of the performer before a blue or green screen; all 0 where no performer stands.

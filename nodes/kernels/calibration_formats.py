@@ -70,8 +70,9 @@ def read_opencv(path: Path) -> CameraRecord:
     """
     try:
         storage = cv2.FileStorage(str(path), cv2.FILE_STORAGE_READ)
-    except cv2.error as error:
-        raise ValueError(f"{path}: not an OpenCV file storage ({error.err})") from error
+    # OpenCV's own error may come wrapped in a SystemError
+    except (cv2.error, SystemError) as error:
+        raise ValueError(f"{path}: not an OpenCV file storage, or damaged: export it again") from error
     if not storage.isOpened():
         raise ValueError(f"{path}: not a readable OpenCV file storage")
     matrix = _field(storage, path, _MATRIX, (9,)).reshape(3, 3)

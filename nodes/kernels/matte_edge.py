@@ -30,14 +30,16 @@ def soft_edge(
     if not performer.any():
         return alpha
     window = _window(performer, round(12 * scale))
-    disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * round(band) + 1, 2 * round(band) + 1))
+    # an edge is never thinner than a pixel
+    width = 2 * max(round(band), 1) + 1
+    disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (width, width))
     solid = fill_small_holes(performer[window], hole).astype(np.uint8)
     core = cv2.erode(solid, disc)
     inside = (core > 0) & ((rough[window] >= 1) | (cv2.erode(core, disc) > 0))
     outside = cv2.dilate(solid, disc) == 0
     behind = None if backing is None else backing[window]
     soft = refine_alpha(
-        image[window].astype(np.float32), inside, outside, rough[window], behind, 3 * scale, _NOISE
+        image[window].astype(np.float32), inside, outside, rough[window], behind, max(3 * scale, 2.0), _NOISE
     )
     alpha[window] = np.round(255 * soft).astype(np.uint8)
     return alpha
