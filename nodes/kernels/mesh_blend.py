@@ -17,6 +17,8 @@ from reperform.nodes.kernels.mesh_geometry import face_areas
 _HOLD = 1e-8
 # Bounds of the cotangent weights, so that slivers neither rule nor let go.
 _WEIGHT = (0.05, 5.0)
+# Neighbouring faces whose rotations differ by less than this are sure of their branch, radians.
+_ALIKE = 0.5
 
 
 def blend_linear(meshes: list[np.ndarray], weights: np.ndarray) -> np.ndarray:
@@ -82,17 +84,22 @@ class MeshBlender:
         factor = factorise(matrix + hold * scipy.sparse.eye(len(points)))
         return cls(faces, frame, np.linalg.inv(frame), weights, _face_neighbours(faces), factor, hold)
 
-    def pair(self, first: np.ndarray, second: np.ndarray) -> PosePair:
+    def pair(self, first: np.ndarray, second: np.ndarray, near: PosePair | None = None) -> PosePair:
         """Take two poses (V, 3) of the topology apart into rotations and stretches of their faces.
 
         The rotation between them is a rotation vector per face whose branch is that of its neighbours, spread
         from the face that turns least: what turns by more than half a turn turns the same way everywhere.
+        near: a pair a frame earlier or later; branches are then those of its faces, so that nothing flips from
+        frame to frame.
         """
         a, b = np.ascontiguousarray(first, np.float64), np.ascontiguousarray(second, np.float64)
         rotation, stretch = _decompose(a, self.faces, self.inverse_frame)
         other, other_stretch = _decompose(b, self.faces, self.inverse_frame)
         turn = _relative_turn(rotation, other)
-        _unwrap(turn, self.neighbours)
+        if near is None:
+            _unwrap(turn, self.neighbours)
+        else:
+            _follow(turn, near.turn)
         return PosePair(first, second, rotation, turn, stretch, other_stretch)
 
     def at(self, pair: PosePair, weight: float) -> np.ndarray:
@@ -151,7 +158,7 @@ def _decompose(
     """Rotation (F, 4), a unit quaternion, and symmetric stretch (F, 3, 3) of each face from the reference."""
     count = len(faces)
     rotation, stretch = np.empty((count, 4)), np.empty((count, 3, 3))
-    gradient, frame, r = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
+    gradient, frame, r, scratch = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
     for f in range(count):
         a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
         for k in range(3):
@@ -164,7 +171,7 @@ def _decompose(
         for k in range(3):
             frame[k, 2] /= max(norm, 1e-30)
         _product(frame, inverse_frame[f], gradient)
-        _closest_rotation(gradient, r)
+        _closest_rotation(gradient, r, scratch)
         _to_quaternion(r, rotation[f])
         _to_matrix(rotation[f], r)
         for i in range(3):
@@ -183,10 +190,9 @@ def _product(a: np.ndarray, b: np.ndarray, out: np.ndarray) -> None:
 
 
 @njit(cache=True, nogil=True)
-def _closest_rotation(matrix: np.ndarray, r: np.ndarray) -> None:
+def _closest_rotation(matrix: np.ndarray, r: np.ndarray, c: np.ndarray) -> None:
     """Polar factor by Newton's iteration with Higham's scaling; gradients with unit normals have det > 0."""
     r[:] = matrix
-    c = np.empty((3, 3))
     change = 1.0
     for _ in range(30):
         for i in range(3):
@@ -271,43 +277,78 @@ def _relative_turn(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 
 
 @njit(cache=True, nogil=True)
+def _nearest_branch(turn: np.ndarray, f: int, guide: np.ndarray, g: int) -> float:
+    """Move turn[f] to the branch, axis (angle + 2 pi k), nearest to guide[g]; returns how far they are then apart.
+
+    Branches beyond three quarters of a turn are left alone: there the axis is noise.
+    """
+    angle, along = 0.0, 0.0
+    for k in range(3):
+        angle += turn[f, k] * turn[f, k]
+        along += turn[f, k] * guide[g, k]
+    angle = np.sqrt(angle)
+    if angle > 1e-9:
+        turns = np.round((along / angle - angle) / (2 * np.pi))
+        if turns != 0.0 and abs(angle + 2 * np.pi * turns) < 1.5 * np.pi:
+            for k in range(3):
+                turn[f, k] *= (angle + 2 * np.pi * turns) / angle
+    apart = 0.0
+    for k in range(3):
+        apart += (turn[f, k] - guide[g, k]) ** 2
+    return np.sqrt(apart)
+
+
+@njit(cache=True, nogil=True)
+def _follow(turn: np.ndarray, near: np.ndarray) -> None:
+    """Move every rotation vector to the branch of the same face a frame away."""
+    for f in range(len(turn)):
+        _nearest_branch(turn, f, near, f)
+
+
+@njit(cache=True, nogil=True)
 def _unwrap(turn: np.ndarray, neighbours: np.ndarray) -> None:
-    """Move every rotation vector to the branch, axis (angle + 2 pi k), nearest to that of a neighbour."""
+    """Move every rotation vector to the branch of its neighbours, the most alike first.
+
+    Faces are met from the one that turns least; those unlike the face they are met from wait until nobody alike
+    is left, so that a few crumpled faces do not turn whole limbs the wrong way.
+    """
     count = len(turn)
     seen = np.zeros(count, np.bool_)
-    queue = np.empty(count, np.int32)
+    alike, unlike = np.empty(count, np.int32), np.empty((3 * count, 2), np.int32)
     square = np.empty(count)
     for f in range(count):
         square[f] = turn[f, 0] ** 2 + turn[f, 1] ** 2 + turn[f, 2] ** 2
-    found = 0
+    head, tail, waiting, last, found = 0, 0, 0, 0, 0
     while found < count:
-        root = np.argmin(square)
-        seen[root] = True
-        square[root] = np.inf
+        if waiting < last:
+            start, guide = unlike[waiting, 0], unlike[waiting, 1]
+            waiting += 1
+            if seen[start]:
+                continue
+            _nearest_branch(turn, start, turn, guide)
+        else:
+            start = np.argmin(square)
+        seen[start] = True
+        square[start] = np.inf
         found += 1
-        queue[0] = root
-        head, tail = 0, 1
+        alike[tail] = start
+        tail += 1
         while head < tail:
-            f = queue[head]
+            f = alike[head]
             head += 1
             for side in range(3):
                 g = neighbours[f, side]
                 if g < 0 or seen[g]:
                     continue
-                seen[g] = True
-                square[g] = np.inf
-                found += 1
-                angle = np.sqrt(turn[g, 0] ** 2 + turn[g, 1] ** 2 + turn[g, 2] ** 2)
-                if angle > 1e-9:
-                    along = (
-                        turn[f, 0] * turn[g, 0] + turn[f, 1] * turn[g, 1] + turn[f, 2] * turn[g, 2]
-                    ) / angle
-                    turns = np.round((along - angle) / (2 * np.pi))
-                    scale = (angle + 2 * np.pi * turns) / angle
-                    for k in range(3):
-                        turn[g, k] *= scale
-                queue[tail] = g
-                tail += 1
+                if _nearest_branch(turn, g, turn, f) < _ALIKE:
+                    seen[g] = True
+                    square[g] = np.inf
+                    found += 1
+                    alike[tail] = g
+                    tail += 1
+                else:
+                    unlike[last, 0], unlike[last, 1] = g, f
+                    last += 1
 
 
 @njit(cache=True, nogil=True)

@@ -53,23 +53,52 @@ def animate(
     blender = None
     if blend == "nonlinear":
         blender = MeshBlender.build(np.asarray(meshes[used[0]].vertices[0]), faces)
-    captured = {take: np.asarray(meshes[take].vertices) for take in used}
-    take, frame, weight = (np.asarray(column) for column in (origin.take, origin.source_frame, origin.weight))
-    yaw, offset = np.asarray(origin.yaw), np.asarray(origin.offset)
-    out = np.empty((len(take), *captured[used[0]].shape[1:]), np.float32)
-    for f in range(len(take)):
-        placed = [
-            apply(
-                captured[takes[take[f, side]]][frame[f, side]],
-                Placement(float(yaw[f, side]), offset[f, side]),
-            )
-            for side in range(2)
-            if weight[f, side] > 0
-        ]
-        if len(placed) == 1:
-            out[f] = placed[0]
-        elif blender is None:
-            out[f] = blend_linear(placed, weight[f])
+    places = _Places(path, {take: np.asarray(meshes[take].vertices) for take in used})
+    weight = np.asarray(origin.weight)
+    blended = np.asarray((weight > 0).all(axis=1))
+    out = np.empty((len(weight), *places.shape), np.float32)
+    for f in np.flatnonzero(~blended).tolist():
+        out[f] = places.at(f, int(np.argmax(weight[f])))
+    for run in _runs(blended):
+        if blender is None:
+            for f in run:
+                out[f] = blend_linear([places.at(f, 0), places.at(f, 1)], weight[f])
         else:
-            out[f] = blender.at(blender.pair(*placed), float(weight[f, 1]))
+            _blend_run(blender, places, weight, run, out)
     return Animation(MeshSequence(out, faces, np.asarray(path.fps)), origin)
+
+
+class _Places:
+    """The captured frames that a path shows, where it shows them."""
+
+    def __init__(self, path: MotionPath, captured: dict[str, np.ndarray]) -> None:
+        origin = path.provenance
+        takes = [str(take) for take in np.asarray(origin.takes)]
+        self.captured = [captured.get(take) for take in takes]
+        self.take, self.frame = np.asarray(origin.take), np.asarray(origin.source_frame)
+        self.yaw, self.offset = np.asarray(origin.yaw), np.asarray(origin.offset)
+        self.shape = next(iter(captured.values())).shape[1:]
+
+    def at(self, f: int, side: int) -> np.ndarray:
+        """Source `side` of frame f, placed on the ground, (V, 3)."""
+        vertices = self.captured[self.take[f, side]]
+        placement = Placement(float(self.yaw[f, side]), self.offset[f, side])
+        return apply(np.asarray(vertices)[self.frame[f, side]], placement)
+
+
+def _runs(blended: np.ndarray) -> list[np.ndarray]:
+    """The frames of each transition, in order."""
+    frames = np.flatnonzero(blended)
+    return np.split(frames, np.flatnonzero(np.diff(frames) > 1) + 1) if len(frames) else []
+
+
+def _blend_run(
+    blender: MeshBlender, places: _Places, weight: np.ndarray, run: np.ndarray, out: np.ndarray
+) -> None:
+    """Blend one transition from its middle, where both takes are most alike, to both its ends."""
+    middle = len(run) // 2
+    for part in (run[middle:], run[:middle][::-1]):
+        near = blender.pair(places.at(run[middle], 0), places.at(run[middle], 1))
+        for f in part:
+            near = blender.pair(places.at(f, 0), places.at(f, 1), near)
+            out[f] = blender.at(near, float(weight[f, 1]))

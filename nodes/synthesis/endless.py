@@ -24,8 +24,8 @@ def endless(
     *,
     seconds: Annotated[float, Param("s", 0.04, 3600.0, "length of the motion")] = 20.0,
     seed: Annotated[int, Param("1", 0, 2**31 - 1, "seed of the walk")] = 0,
-    choosiness: Annotated[float, Param("1", 0.0, 1000.0, "how much cheap transitions are preferred")] = 10.0,
-    variety: Annotated[float, Param("1", 0.0, 10.0, "how much transitions taken before are avoided")] = 1.0,
+    choosiness: Annotated[float, Param("1", 0.0, 1000.0, "how much cheap transitions are preferred")] = 6.0,
+    variety: Annotated[float, Param("1", 0.0, 10.0, "how much transitions taken before are avoided")] = 2.0,
 ) -> MotionPath:
     """A random walk through the core of a motion graph, exactly `seconds` long; it never dies.
 

@@ -106,3 +106,16 @@ def test_faces_that_name_no_vertex_are_refused(bar: tuple[np.ndarray, np.ndarray
     vertices, faces = bar
     with pytest.raises(ValueError, match="must name vertices"):
         MeshBlender.build(vertices[:-1], faces)
+
+
+def test_a_pair_near_another_keeps_its_branch(bar: tuple[np.ndarray, np.ndarray]) -> None:
+    vertices, faces = bar
+    axis = np.array([0.3, 0.8, -0.5]) / np.linalg.norm([0.3, 0.8, -0.5])
+    blender = MeshBlender.build(vertices, faces)
+    # turned by a little less, then a little more than half a turn: alone, the second goes the other way round
+    before = blender.pair(vertices, vertices @ exp(axis * 3.0).T)
+    other = vertices @ exp(axis * 3.3).T
+    alone, following = blender.pair(vertices, other), blender.pair(vertices, other, before)
+    assert np.linalg.norm(alone.turn - before.turn, axis=1).min() > 5.0
+    np.testing.assert_allclose(np.linalg.norm(following.turn - before.turn, axis=1), 0.3, atol=1e-6)
+    np.testing.assert_allclose(blender.at(following, 1.0), other, atol=1e-6)
