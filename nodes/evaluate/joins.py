@@ -36,11 +36,11 @@ def joins(
     mesh = animation.mesh
     for name, take in meshes.items():
         same = take.vertices.shape[1] == mesh.vertices.shape[1]
-        if not same or float(take.fps) != float(mesh.fps):
+        if not same or float(np.asarray(take.fps)) != float(mesh.fps):
             raise ValueError(
                 f"evaluate.joins: take {name!r} must have the vertices and rate of the motion, "
                 f"{mesh.vertices.shape[1]} at {float(mesh.fps):g} Hz, got {take.vertices.shape[1]} at "
-                f"{float(take.fps):g} Hz: wire the meshes that the motion is made of"
+                f"{float(np.asarray(take.fps)):g} Hz: wire the meshes that the motion is made of"
             )
     captured = [np.asarray(take.vertices) for take in meshes.values()]
     weight = np.asarray(animation.provenance.weight)

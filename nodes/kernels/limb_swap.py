@@ -23,14 +23,15 @@ def limb_pairs(names: np.ndarray) -> list[tuple[str, int, int]]:
 def nearest_bone(points: np.ndarray, joints: np.ndarray, parents: np.ndarray) -> np.ndarray:
     """For every point (N, 3) the joint (N,) at whose bone it lies: the segments from a joint to its children.
 
-    A joint without children is its own point. joints (J, 3), parents (J,), -1 at the root; ties to the lower joint.
+    A joint without children owns what lies beyond it. joints (J, 3), parents (J,), -1 at the root; else ties go to
+    the lower joint.
     """
-    children = [np.flatnonzero(parents == k) for k in range(len(joints))]
     best, owner = np.full(len(points), np.inf), np.zeros(len(points), int)
-    for k, below in enumerate(children):
+    for k in range(len(joints)):
+        below = np.flatnonzero(parents == k)
         for end in joints[below] if len(below) else joints[k : k + 1]:
             distance = _to_segment(points, joints[k], end)
-            closer = distance < best
+            closer = distance < best if len(below) else distance <= best + 1e-9
             best[closer], owner[closer] = distance[closer], k
     return owner
 
