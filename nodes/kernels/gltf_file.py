@@ -62,7 +62,7 @@ class Gltf:
         if dtype is np.float32:
             return values.astype(np.float64)
         if accessor.get("normalized"):
-            return np.maximum(values / float(np.iinfo(dtype).max), -1.0)
+            return np.maximum(values / float(np.iinfo(values.dtype).max), -1.0)
         return values
 
     def picture(self, index: int) -> np.ndarray:

@@ -37,7 +37,7 @@ def shadow_map(
     Surface area is dropped straight down: what is low darkens a small spot, what is high a wide one.
     """
     corner = vertices[:, [0, 2]].mean(axis=0) - half
-    count = int(round(2 * half / cell))
+    count = round(2 * half / cell)
     place = np.clip(((vertices[:, [0, 2]] - corner) / cell).astype(int), 0, count - 1)
     area = vertex_areas(vertices, faces)
     loss = np.zeros((count, count), np.float32)

@@ -92,7 +92,8 @@ def _arm(sleeve: str, upper: float, lower: float, cuff: float) -> list[Part]:
         _ellipsoid("left_shoulder", sleeve, "left_arm", (0.148, 1.372, -0.012),
                    (0.054 + upper, 0.050 + upper, 0.054 + upper), 0.05, up=(-0.5, 0.86, 0)),
         Part("left_upper_arm", sleeve, ("left_arm",), shoulder, elbow, side, (0, 0.15, 0.3, 0.6, 1),
-             tuple(r + upper for r in (0.024, 0.044, 0.048, 0.043, 0.038)), tuple(r + upper for r in (0.024, 0.046, 0.051, 0.045, 0.039)),
+             tuple(r + upper for r in (0.024, 0.044, 0.048, 0.043, 0.038)),
+                  tuple(r + upper for r in (0.024, 0.046, 0.051, 0.045, 0.039)),
              blend=0.03),
         _ellipsoid("left_elbow", sleeve, "left_forearm", (0.343, 1.186, -0.013), (0.038 + upper,) * 3, 0.01),
         Part("left_forearm", "skin", ("left_forearm",), (0.338, 1.192, -0.012), wrist, side, (0, 0.25, 0.7, 1),
@@ -121,9 +122,12 @@ def _leg(cloth: str, thigh: float, shin: float, hem: float, boot: float, boot_to
         Part("left_thigh", cloth, ("left_thigh",), hip, (0.1057, 0.475, 0.008), stations=(0, 0.25, 0.6, 0.9, 1),
              half_u=tuple(r + thigh for r in (0.076, 0.079, 0.066, 0.054, 0.052)),
              half_w=tuple(r + thigh for r in (0.086, 0.088, 0.073, 0.060, 0.056)), blend=0.03),
-        Part("left_shin", cloth, ("left_shin",), (0.105, 0.52, 0.008), (0.118, 0.07, -0.018), stations=(0, 0.12, 0.3, 0.6, 0.85, 1),
-             half_u=tuple(r + s for r, s in zip((0.050, 0.051, 0.054, 0.045, 0.036, 0.036), (shin, shin, shin, shin, shin + hem, shin + hem), strict=True)),
-             half_w=tuple(r + s for r, s in zip((0.054, 0.055, 0.060, 0.050, 0.040, 0.040), (shin, shin, shin, shin, shin + hem, shin + hem), strict=True)),
+        Part("left_shin", cloth, ("left_shin",), (0.105, 0.52, 0.008), (0.118, 0.07, -0.018),
+                  stations=(0, 0.12, 0.3, 0.6, 0.85, 1),
+             half_u=tuple(r + s for r, s in zip((0.050, 0.051, 0.054, 0.045, 0.036, 0.036),
+                  (shin, shin, shin, shin, shin + hem, shin + hem), strict=True)),
+             half_w=tuple(r + s for r, s in zip((0.054, 0.055, 0.060, 0.050, 0.040, 0.040),
+                  (shin, shin, shin, shin, shin + hem, shin + hem), strict=True)),
              shift_w=(0.0, 0.004, 0.016, 0.008, 0.0, 0.0), blend=0.015),
         Part("left_shoe", "shoe", ("left_foot", "left_toe"), (0.112, 0.030, -0.088), (0.137, 0.022, 0.188),
              stations=(0, 0.06, 0.2, 0.4, 0.65, 0.85, 0.96, 1), half_u=(0.022, 0.034, 0.039, 0.040, 0.049, 0.045, 0.030, 0.012),
@@ -133,7 +137,8 @@ def _leg(cloth: str, thigh: float, shin: float, hem: float, boot: float, boot_to
         top: Point = tuple(a + boot_top * (k - a) for a, k in zip(ankle, knee, strict=True))  # type: ignore[assignment]
         parts.append(
             Part("left_boot", "shoe", ("left_foot", "left_shin"), (0.118, 0.06, -0.02), top, stations=(0, 0.3, 0.7, 1),
-                 half_u=tuple(r + boot for r in (0.036, 0.036, 0.040, 0.046)), half_w=tuple(r + boot for r in (0.042, 0.040, 0.046, 0.053)),
+                 half_u=tuple(r + boot for r in (0.036, 0.036, 0.040, 0.046)),
+                  half_w=tuple(r + boot for r in (0.042, 0.040, 0.046, 0.053)),
                  shift_w=(0.0, 0.0, -0.006, -0.012), knots=(0.02, 0.35), blend=0.012)
         )  # fmt: skip
     return parts

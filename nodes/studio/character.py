@@ -94,8 +94,8 @@ def _skin(surface: RiggedSurface, world: np.ndarray) -> np.ndarray:
 
 def _joints(gltf: Gltf, parents: np.ndarray) -> tuple[list[int], np.ndarray]:
     """(nodes that are joints, parents first; parent of each among them or -1)."""
-    skins = gltf.entries("skins")
-    chosen = set(max((skin["joints"] for skin in skins), key=len)) if skins else set(range(len(parents)))
+    rigs: list[list[int]] = [list(skin["joints"]) for skin in gltf.entries("skins")]
+    chosen = set(max(rigs, key=len)) if rigs else set(range(len(parents)))
     order = [index for index in by_depth(parents) if index in chosen]
     position = {index: place for place, index in enumerate(order)}
     above = []
@@ -113,10 +113,10 @@ def _placement(heading: float, size: float) -> np.ndarray:
 
 
 def _contacts(joints: np.ndarray, names: list[str], fps: float) -> np.ndarray:
-    columns = [_foot(names, side) for side in ("left", "right")]
-    if None in columns:
+    left, right = _foot(names, "left"), _foot(names, "right")
+    if left is None or right is None:
         return np.zeros((len(joints), 2), bool)
-    return planted_feet(joints[:, columns], fps)
+    return planted_feet(joints[:, [left, right]], fps)
 
 
 def _foot(names: list[str], side: str) -> int | None:

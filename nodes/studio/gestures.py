@@ -225,15 +225,16 @@ def dance(stand: Plan, time: np.ndarray, seconds: float, amount: float) -> Plan:
         arms[:, side, 1] += envelope * (0.75 + 0.45 * np.sin(0.5 * w + 1.3 * delay))
         arms[:, side, 3] += envelope * (0.7 + 0.5 * np.sin(w + delay + 1.1))
     smooth = _moving_mean(aside, 31)
+    bend, turn, lean = np.cos(2 * w), np.sin(w), np.sin(w + 0.6)
     return stand._replace(
         ball=ball,
         planted=planted,
         arms=arms,
         rise=stand.rise - envelope * (0.035 + 0.022 * np.cos(2 * w)),
         track=stand.track + np.column_stack([smooth + sway, np.zeros_like(sway)]),
-        hips=stand.hips + envelope[:, None] * np.column_stack([0.03 * np.cos(2 * w), 0.22 * np.sin(w), 0.10 * np.sin(w + 0.6)]),
-        spine=stand.spine + envelope[:, None] * np.column_stack([0.05 * np.cos(2 * w), -0.24 * np.sin(w + 0.5), -0.14 * np.sin(w + 0.6)]),
-        head=stand.head + envelope[:, None] * np.column_stack([0.06 * np.cos(2 * w), 0.18 * np.sin(0.5 * w), 0.08 * np.sin(w)]),
+        hips=stand.hips + envelope[:, None] * np.column_stack([0.03 * bend, 0.22 * turn, 0.10 * lean]),
+        spine=stand.spine + envelope[:, None] * np.column_stack([0.05 * bend, -0.24 * np.sin(w + 0.5), -0.14 * lean]),
+        head=stand.head + envelope[:, None] * np.column_stack([0.06 * bend, 0.18 * np.sin(0.5 * w), 0.08 * turn]),
     )  # fmt: skip
 
 

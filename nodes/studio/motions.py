@@ -24,8 +24,9 @@ def plan_motion(
     motion: Motion, seconds: float, rate: float, walk: float, jog: float, turn: float, phase: float, height: float,
     length: float,
 ) -> Plan:  # fmt: skip
-    """The plan of a take, `rate` samples a second from -MARGIN to seconds + MARGIN; height and length in m at the reference stature,
-    0: the motion's own.
+    """The plan of a take, `rate` samples a second from -MARGIN to seconds + MARGIN.
+
+    Height and length are in m at the reference stature; 0: the motion's own.
     """
     start = round(MARGIN * rate)
     time = np.arange(-start, round((seconds + MARGIN) * rate) + 1) / rate

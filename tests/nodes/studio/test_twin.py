@@ -60,7 +60,7 @@ def test_the_closed_surface_is_closed_near_the_clothed_one_and_painted_like_it(f
 def test_what_is_wrong_is_named(folder, tmp_path):
     with pytest.raises(ValueError, match=r"no clip 'wlk'; did you mean 'walk'.* the folder has: jump, run"):
         twin(folder=str(folder), clip="wlk")
-    with pytest.raises(ValueError, match="rest.npz does not exist"):
+    with pytest.raises(ValueError, match=r"rest\.npz does not exist"):
         twin(folder=str(tmp_path), clip="walk")
     for name in ("rest.npz", "atlas.png"):
         shutil.copy(folder / name, tmp_path / name)
