@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from reperform.nodes.declaration import Param, node
 from reperform.nodes.kernels.closest_point import closest_points
@@ -30,6 +31,8 @@ from reperform.nodes.products.motion import ShapeTree
 # A frame this near in time to its parent continues the parent's motion; others are placed anew.
 _NEAR = 2
 _TURNS = 3
+# Normals count in the search for closest points like this distance (m): about the thickness of a limb.
+_NORMAL_LENGTH = 0.15
 
 
 @node(over="dataset", memory=2.0)
@@ -45,11 +48,14 @@ def register(
     levels: Annotated[int, Param("levels", 1, 5, "each with twice as many nodes as the last")] = 3,
     reach: Annotated[
         float, Param("m", 0.01, 1.0, "distance at which closest points lose their pull, coarsest level")
-    ] = 0.2,
+    ] = 0.12,
     detail: Annotated[float, Param("m", 0.002, 0.5, "the same at the finest level")] = 0.05,
     stiffness: Annotated[
         float, Param("1", 0.0, 1000.0, "resistance to change of shape against one closest point")
-    ] = 1.0,
+    ] = 0.2,
+    tangential: Annotated[
+        float, Param("1", 0.0, 1.0, "share of a closest point's pull that is not along its normal")
+    ] = 0.4,
     iterations: Annotated[int, Param("steps", 1, 50, "Gauss-Newton steps per level")] = 4,
     prior: Annotated[
         float, Param("1", 0.0, 10.0, "pull of the expected place against one closest point")
@@ -82,15 +88,17 @@ def register(
     first = frames[order[0]]
     template = make_template(first.vertices, first.faces, patches, levels)
     stages = _stages(template, reach, detail, stiffness, iterations)
-    pull = Pull(0.15, 0.1, prior)
+    pull = Pull(_NORMAL_LENGTH, tangential, prior)
     aligned: dict[int, np.ndarray] = {int(order[0]): template.vertices}
     figures = {int(order[0]): (0.0, 0.0)}
     lengths = edges(template.faces)
-    for k in map(int, order[1:]):
-        target = fit_target(frames[k].vertices, frames[k].faces, pull.normal_length)
-        start = _start(template, frames, aligned, parent, k, target, stages[0].scale, pull)
-        aligned[k] = fit(template, start, target, stages, pull)
-        figures[k] = _figures(template, aligned[k], frames[k], lengths)
+    # the banded solves are small: several BLAS threads would only wait for each other, and could change bits
+    with threadpool_limits(limits=1, user_api="blas"):
+        for k in map(int, order[1:]):
+            target = fit_target(frames[k].vertices, frames[k].faces, pull.normal_length)
+            start = _start(template, frames, aligned, parent, k, target, stages[0].scale, pull)
+            aligned[k] = fit(template, start, target, stages, pull)
+            figures[k] = _figures(template, aligned[k], frames[k], lengths)
     return {
         name: _sequence(
             surfaces[name], tree, number, template, aligned, figures, order[0], (residual_gate, stretch_gate)

@@ -106,14 +106,18 @@ def misfit(template: Template, moved: np.ndarray, target: FitTarget, scale: floa
 def predict(template: Template, parent: np.ndarray, grandparent: np.ndarray, ratio: float) -> np.ndarray:
     """Where the motion from grandparent to parent leads if it goes on for `ratio` times as long: (V, 3).
 
-    The nodes of the coarsest graph go on along their paths; those of whole steps also go on turning.
+    Each node of the coarsest graph repeats its last step: it turns on by S = R_1 R_0^T and goes on by S
+    (y_1 - y_0), which is exact for a steady rigid motion. For part of a step it goes on straight, without
+    turning.
     """
     graph = template.graphs[0]
     turned, shifted = node_motions(graph, template.vertices, parent)
     before, came = node_motions(graph, template.vertices, grandparent)
     step = turned @ np.swapaxes(before, 1, 2)
-    rotation = step @ turned if ratio > 0.75 else turned
-    places = shifted + ratio * (shifted - came)
+    whole = ratio > 0.75
+    rotation = step @ turned if whole else turned
+    course = np.einsum("kij,kj->ki", step, shifted - came) if whole else shifted - came
+    places = shifted + ratio * course
     # detail that the coarse graph does not carry stays as it is at the parent
     detail = parent - deform(graph, template.vertices, turned, shifted)
     return deform(graph, template.vertices, rotation, places) + detail

@@ -1,0 +1,109 @@
+import numpy as np
+import pytest
+import trimesh
+
+from reperform.nodes.align.register import register
+from reperform.nodes.kernels.turn_search import turn_matrix
+from reperform.nodes.products.mesh import Surfaces
+from reperform.nodes.products.motion import ShapeTree
+from reperform.nodes.ragged import Ragged
+
+QUICK = {"patches": 12, "levels": 3, "iterations": 4}
+ANGLES = {"nod": [0.0, 0.12, 0.24, 0.36], "turned": [0.3, 0.18, 0.06]}
+PLACE = {"nod": (0.0, np.zeros(3)), "turned": (1.3, np.array([1.5, 0, -0.6]))}
+
+
+def _rest(seed):
+    """Points of one solid, tessellated anew for every seed: a sausage with an arm on one side and a nose."""
+    mesh = trimesh.creation.icosphere(3)
+    mesh.apply_transform(
+        trimesh.transformations.random_rotation_matrix(np.random.default_rng(seed).random(3))
+    )
+    rest = mesh.vertices * (0.16, 0.6, 0.12)
+    rest[:, 0] += 0.25 * np.exp(-30 * ((mesh.vertices - (0.8, 0.6, 0)) ** 2).sum(1))
+    rest[:, 2] += 0.12 * np.exp(-30 * ((mesh.vertices - (-0.3, -0.3, 0.9)) ** 2).sum(1))
+    return rest, mesh.faces.astype(np.int32)
+
+
+def _posed(rest, take, frame):
+    turn = ANGLES[take][frame] * np.clip(rest[:, 1] / 0.6, 0, 1)
+    x = rest[:, 0] * np.cos(turn) + rest[:, 1] * np.sin(turn)
+    y = rest[:, 1] * np.cos(turn) - rest[:, 0] * np.sin(turn)
+    yaw, offset = PLACE[take]
+    return np.column_stack([x, y + 0.7, rest[:, 2]]) @ turn_matrix(yaw).T + offset
+
+
+@pytest.fixture(scope="module")
+def surfaces():
+    takes, seed = {}, 0
+    for take, angles in ANGLES.items():
+        vertices, faces = [], []
+        for frame in range(len(angles)):
+            rest, triangles = _rest(seed)
+            seed += 1
+            vertices.append(_posed(rest, take, frame).astype(np.float32))
+            faces.append(triangles)
+        takes[take] = Surfaces(Ragged(vertices), Ragged(faces), np.float32(25))
+    return takes
+
+
+@pytest.fixture(scope="module")
+def tree():
+    # rows 0..3 nod, 4..6 turned; the root is nod frame 1; turned hangs from nod frame 3 by its frame 0
+    parent = np.array([1, 1, 1, 2, 3, 4, 5], np.int32)
+    take, frame = np.array([0] * 4 + [1] * 3, np.int32), np.array([0, 1, 2, 3, 0, 1, 2], np.int32)
+    order = np.array([1, 0, 2, 3, 4, 5, 6], np.int32)
+    return ShapeTree(np.array(list(ANGLES)), take, frame, parent, np.ones(7, np.float32), order)
+
+
+@pytest.fixture(scope="module")
+def aligned(surfaces, tree):
+    return register(surfaces, tree, root="tree", **QUICK)
+
+
+def test_one_topology_that_follows_the_true_points(aligned, surfaces):
+    rest, faces = _rest(1)
+    for take, sequence in aligned.items():
+        np.testing.assert_array_equal(sequence.mesh.faces, faces)
+        truth = np.stack([_posed(rest, take, k) for k in range(len(ANGLES[take]))])
+        error = np.linalg.norm(sequence.mesh.vertices - truth, axis=2)
+        assert error.mean() < 0.008, take
+        assert np.percentile(error, 95) < 0.02, take
+        assert sequence.mesh.vertices.dtype == np.float32
+        assert sequence.mesh.fps == 25
+
+
+def test_root_is_kept_and_named_and_figures_are_plausible(aligned, surfaces):
+    nod = aligned["nod"]
+    np.testing.assert_array_equal(nod.mesh.vertices[1], surfaces["nod"].vertices[1])
+    assert (str(nod.root_take), int(nod.root_frame)) == ("nod", 1)
+    assert nod.residual[1] == nod.stretch[1] == 0
+    assert 0 < nod.residual[3] < 0.006
+    assert all(sequence.trusted.all() for sequence in aligned.values())
+
+
+def test_gates_mistrust(surfaces, tree):
+    strict = register(surfaces, tree, root="tree", residual_gate=1e-5, patches=8, levels=1, iterations=1)
+    np.testing.assert_array_equal(strict["nod"].trusted, [False, True, False, False])
+
+
+def test_spread_chooses_the_surface_with_clear_limbs(surfaces, tree):
+    closed = dict(surfaces)
+    # shrink the arm of all frames but one: it then shows most
+    thick = [np.asarray(v) * np.float32(1) for v in surfaces["nod"].vertices]
+    for k in (0, 1, 2):
+        thick[k] = thick[k] * np.float32([1.5, 1, 1.5])
+    closed["nod"] = surfaces["nod"]._replace(vertices=Ragged(thick))
+    closed["turned"] = surfaces["turned"]._replace(
+        vertices=Ragged([v * np.float32([1.5, 1, 1.5]) for v in surfaces["turned"].vertices])
+    )
+    found = register(closed, tree, root="spread", patches=8, levels=1, iterations=1)
+    assert (str(found["nod"].root_take), int(found["nod"].root_frame)) == ("nod", 3)
+
+
+def test_refuses_a_tree_of_other_surfaces(surfaces, tree):
+    with pytest.raises(ValueError, match="3 frames of take turned, the surfaces have no such take"):
+        register({"nod": surfaces["nod"]}, tree)
+    fewer = surfaces["nod"]._replace(vertices=surfaces["nod"].vertices[:3], faces=surfaces["nod"].faces[:3])
+    with pytest.raises(ValueError, match="4 frames of take nod, the surfaces have 3 frames"):
+        register(surfaces | {"nod": fewer}, tree)
