@@ -95,7 +95,7 @@ def _skin(surface: RiggedSurface, world: np.ndarray) -> np.ndarray:
 def _joints(gltf: Gltf, parents: np.ndarray) -> tuple[list[int], np.ndarray]:
     """(nodes that are joints, parents first; parent of each among them or -1)."""
     rigs: list[list[int]] = [list(skin["joints"]) for skin in gltf.entries("skins")]
-    chosen = set(max(rigs, key=len)) if rigs else set(range(len(parents)))
+    chosen = set(rigs[int(np.argmax([len(joints) for joints in rigs]))]) if rigs else set(range(len(parents)))
     order = [index for index in by_depth(parents) if index in chosen]
     position = {index: place for place, index in enumerate(order)}
     above = []
