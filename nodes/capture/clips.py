@@ -74,7 +74,7 @@ def clips(
         digest=np.array([[strip.digests[k] for strip in strips] for k in wanted], dtype=str),
         image_size=np.array([strip.size for strip in strips], np.int32),
         name=np.array(names, dtype=str),
-        fps=np.float32(rate),
+        fps=np.asarray(rate, np.float32),
     )
 
 

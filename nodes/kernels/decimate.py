@@ -243,7 +243,7 @@ def _turns(
     for k in range(first, last):
         f = around[k]
         a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
-        if gone == a or gone == b or gone == c:
+        if gone in (a, b, c):
             continue
         if b == moved:
             a, b, c = b, c, a
