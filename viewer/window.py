@@ -55,6 +55,7 @@ class Window:
         self._last, self._shown, self._smooth = time.monotonic(), ("", ""), True
         self._material_key: tuple[str, str, str] | None = None
         self._material: Any = None
+        self._body = ""
         self._rows: dict[int, tuple[str, str]] = {}
         self._build_panel()
         self._build_bar()
@@ -222,11 +223,15 @@ class Window:
 
     def _show_body(self, fresh: bool) -> None:
         body, scene = self.session.body(), self._scene.scene
-        # A surface in a scene cannot change: it is taken out and a new one put in.
-        if scene.has_geometry(BODY):
-            scene.remove_geometry(BODY)
-        home = self._home(body)
-        scene.add_geometry(BODY, as_mesh(body, home), self._material_for(body))
+        # A surface in a scene cannot change: it is taken out and a new one put in. Where the new one has another
+        # size the old one is only hidden: on Vulkan, buffers of another size in its place end all drawing.
+        name = f"{BODY} {len(body.vertices)} {len(body.faces)} {body.image is not None}"
+        if name != self._body and self._body:
+            scene.show_geometry(self._body, False)
+        if scene.has_geometry(name):
+            scene.remove_geometry(name)
+        self._body, home = name, self._home(body)
+        scene.add_geometry(name, as_mesh(body, home), self._material_for(body))
         if fresh:
             self._stand_back()
         self._scene.force_redraw()

@@ -137,7 +137,10 @@ def figure(
         "savefig.facecolor": PAPER,
     }
     with matplotlib.rc_context(style):
-        fig: Any = Figure(figsize=(size[0] / DPI, size[1] / DPI), dpi=DPI, layout=layout)
+        # On a small page everything is drawn smaller, so that it still fits.
+        dpi = DPI * min(1.0, size[0] / 480, size[1] / 360)
+        inches = tuple((length + 0.01) / dpi for length in size)
+        fig: Any = Figure(figsize=inches, dpi=dpi, layout=layout)
         fig.get_layout_engine().set(w_pad=0.14, h_pad=0.14)
         FigureCanvasAgg(fig)
         yield fig
