@@ -43,7 +43,7 @@ def register(
     root: Annotated[
         Literal["spread", "tree"],
         Param(about="spread: the frame whose surface shows most; tree: the tree's own root"),
-    ] = "spread",
+    ] = "tree",
     patches: Annotated[int, Param("nodes", 8, 500, "of the coarsest deformation graph")] = 60,
     levels: Annotated[int, Param("levels", 1, 5, "each with twice as many nodes as the last")] = 3,
     reach: Annotated[
@@ -59,7 +59,7 @@ def register(
     iterations: Annotated[int, Param("steps", 1, 50, "Gauss-Newton steps per level")] = 4,
     prior: Annotated[
         float, Param("1", 0.0, 10.0, "pull of the expected place against one closest point")
-    ] = 0.1,
+    ] = 0.03,
     residual_gate: Annotated[float, Param("m", 0.0, 1.0, "largest residual of a trusted frame")] = 0.02,
     stretch_gate: Annotated[float, Param("1", 0.0, 10.0, "largest stretch of a trusted frame")] = 0.3,
 ) -> Dataset[AlignedSequence]:
