@@ -6,8 +6,10 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from reperform.graphs.unit import Unit
+from reperform.nodes.distributions import versions as installed
 from reperform.storage.index import Index
 
+# Libraries that results may depend on: their versions are recorded, not in keys.
 LIBRARIES = (
     "numpy",
     "scipy",
@@ -31,22 +33,9 @@ def changed_parts(
         if unit.status == "done" and known.get(unit.name) != unit.parts["key"]
     }
     if changed:
-        versions = library_versions()
+        versions = installed(LIBRARIES)
         changed = {name: {**parts, "versions": versions} for name, parts in changed.items()}
     return changed
-
-
-def library_versions() -> dict[str, str]:
-    """Versions of the libraries results may depend on: recorded, not in keys."""
-    import importlib.metadata
-
-    found = {}
-    for library in LIBRARIES:
-        try:
-            found[library] = importlib.metadata.version(library)
-        except importlib.metadata.PackageNotFoundError:
-            found[library] = "not installed"
-    return found
 
 
 def differences(before: Mapping[str, Any] | None, now: Mapping[str, Any]) -> list[str]:

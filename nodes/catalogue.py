@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import hashlib
 import importlib
-import importlib.metadata
 import importlib.util
 import inspect
 import json
@@ -20,6 +19,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from reperform.nodes.distributions import plug_ins
 from reperform.nodes.fingerprint import SourceTree
 
 GROUP = "reperform.nodes"
@@ -192,25 +192,29 @@ def cache_folder() -> Path:
 
 def _packages() -> Iterator[Package]:
     """The own stations, then plug-ins by entry point."""
-    yield "", "reperform.nodes", _modules("reperform.nodes", Path(__file__).parent)
-    for entry in sorted(importlib.metadata.entry_points(group=GROUP), key=lambda e: (e.name, e.value)):
-        package = entry.value.partition(":")[0]
-        spec = importlib.util.find_spec(package.partition(".")[0])
+    yield "", "reperform.nodes", _modules("reperform.nodes", os.path.dirname(__file__))
+    for name, value in sorted(plug_ins(GROUP)):
+        package = value.partition(":")[0]
+        top = package.partition(".")[0]
+        spec = importlib.util.find_spec(top)
         if spec is None or spec.origin is None:
             raise ImportError(
-                f"plug-in {entry.name!r} ({GROUP}) names module {package!r}, which cannot be found: reinstall it"
+                f"plug-in {name!r} ({GROUP}) names module {package!r}, which cannot be found: reinstall it"
             )
-        origin, top = Path(spec.origin), package.partition(".")[0]
-        files = _modules(top, origin.parent) if spec.submodule_search_locations else {top: origin}
-        yield f"{entry.name}.", package, files
+        inside = bool(spec.submodule_search_locations)
+        files = _modules(top, os.path.dirname(spec.origin)) if inside else {top: Path(spec.origin)}
+        yield f"{name}.", package, files
 
 
-def _modules(package: str, folder: Path) -> dict[str, Path]:
+def _modules(package: str, folder: str) -> dict[str, Path]:
     found = {}
-    for path in sorted(folder.rglob("*.py")):
-        parts = path.relative_to(folder).with_suffix("").parts
-        parts = parts[:-1] if parts[-1] == "__init__" else parts
-        found[".".join((package, *parts))] = path
+    for place, folders, files in os.walk(folder):
+        folders.sort()
+        inside = place[len(folder) :].strip(os.sep).split(os.sep) if place != folder else []
+        for file in sorted(files):
+            if file.endswith(".py"):
+                parts = [package, *inside] if file == "__init__.py" else [package, *inside, file[:-3]]
+                found[".".join(parts)] = Path(place, file)
     return found
 
 
