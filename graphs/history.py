@@ -9,7 +9,6 @@ from reperform.graphs.unit import Unit
 from reperform.nodes.distributions import versions as installed
 from reperform.storage.index import Index
 
-# Libraries that results may depend on: their versions are recorded, not in keys.
 LIBRARIES = (
     "numpy",
     "scipy",
@@ -33,9 +32,14 @@ def changed_parts(
         if unit.status == "done" and known.get(unit.name) != unit.parts["key"]
     }
     if changed:
-        versions = installed(LIBRARIES)
+        versions = library_versions()
         changed = {name: {**parts, "versions": versions} for name, parts in changed.items()}
     return changed
+
+
+def library_versions() -> dict[str, str]:
+    """Versions of the libraries results may depend on: recorded, not in keys."""
+    return installed(LIBRARIES)
 
 
 def differences(before: Mapping[str, Any] | None, now: Mapping[str, Any]) -> list[str]:
