@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 import time
@@ -40,8 +41,11 @@ def open_window(session: Session, size: tuple[int, int] = SIZE) -> None:
 
     app = gui.Application.instance
     app.initialize()
-    Window(session, app.create_window(session.browser.title or "reperform", *size))
+    shown = Window(session, app.create_window(session.browser.title or "reperform", *size))
     app.run()
+    # Widgets that outlive the application end the process with a fault when Python exits.
+    shown.__dict__.clear()
+    gc.collect()
 
 
 class Window:
@@ -55,7 +59,7 @@ class Window:
         self._last, self._shown, self._smooth = time.monotonic(), ("", ""), True
         self._material_key: tuple[str, str, str] | None = None
         self._material: Any = None
-        self._body = ""
+        self._room, self._wish = 1 << 15, session.surface
         self._rows: dict[int, tuple[str, str]] = {}
         self._build_panel()
         self._build_bar()
@@ -89,6 +93,7 @@ class Window:
         if fresh:
             self._offer_finishes()
             self._describe()
+            self.window.set_needs_layout()
         self._scene.visible = session.in_space
         self._picture.visible = not session.in_space
         if session.in_space:
@@ -156,7 +161,7 @@ class Window:
         self.refresh()
 
     def _set_finish(self, name: str, _: int) -> None:
-        self.session.surface = next(finish for finish in self.session.finishes() if finish == name)
+        self._wish = self.session.surface = next(f for f in self.session.finishes() if f == name)
         self.refresh()
 
     def _set_follow(self, follow: bool) -> None:
@@ -205,8 +210,7 @@ class Window:
         self._finish.clear_items()
         for finish in finishes:
             self._finish.add_item(finish)
-        if self.session.surface not in finishes:
-            self.session.surface = finishes[0]
+        self.session.surface = self._wish if self._wish in finishes else finishes[0]
         self._finish.selected_text = self.session.surface
         self._finish.visible = self._follow.visible = self.session.in_space
 
@@ -223,15 +227,12 @@ class Window:
 
     def _show_body(self, fresh: bool) -> None:
         body, scene = self.session.body(), self._scene.scene
-        # A surface in a scene cannot change: it is taken out and a new one put in. Where the new one has another
-        # size the old one is only hidden: on Vulkan, buffers of another size in its place end all drawing.
-        name = f"{BODY} {len(body.vertices)} {len(body.faces)} {body.image is not None}"
-        if name != self._body and self._body:
-            scene.show_geometry(self._body, False)
-        if scene.has_geometry(name):
-            scene.remove_geometry(name)
-        self._body, home = name, self._home(body)
-        scene.add_geometry(name, as_mesh(body, home), self._material_for(body))
+        # A surface in a scene cannot change: it is taken out and a new one put in.
+        if scene.has_geometry(BODY):
+            scene.remove_geometry(BODY)
+        self._room = max(self._room, 1 << (len(body.faces) - 1).bit_length())
+        home = self._home(body)
+        scene.add_geometry(BODY, as_mesh(body, home, self._room), self._material_for(body))
         if fresh:
             self._stand_back()
         self._scene.force_redraw()
@@ -297,21 +298,35 @@ def as_image(picture: np.ndarray) -> Any:
     return make(np.ascontiguousarray(picture))
 
 
-def as_mesh(body: Body, home: np.ndarray) -> Any:
-    """An Open3D mesh of a body, moved so that `home` (3,) is the origin."""
+def as_mesh(body: Body, home: np.ndarray, room: int) -> Any:
+    """An Open3D mesh of a body, moved so that `home` (3,) is the origin, filled up to `room` triangles.
+
+    Every triangle has corners of its own with colours and uv, so that all surfaces have buffers of one size and
+    layout: on a software Vulkan driver a change of these ends all drawing.
+    """
     from open3d import geometry, utility
 
-    mesh = geometry.TriangleMesh(
-        utility.Vector3dVector(body.vertices - home), utility.Vector3iVector(body.faces.astype(np.int32))
-    )
+    from reperform.nodes.kernels.mesh_geometry import vertex_normals
+
+    faces = body.faces
+    normals = vertex_normals(body.vertices, faces)
+    colours = np.broadcast_to(CLAY, body.vertices.shape)
+    uv = np.zeros((3 * room, 2))
     if body.uv is not None and body.faces_uv is not None:
-        corners = np.asarray(body.uv)[np.asarray(body.faces_uv)].reshape(-1, 2)
-        mesh.triangle_uvs = utility.Vector2dVector(corners)
+        uv[: 3 * len(faces)] = np.asarray(body.uv)[np.asarray(body.faces_uv)].reshape(-1, 2)
+        colours = np.ones_like(body.vertices)
     elif body.reference is not None:
-        mesh.vertex_colors = utility.Vector3dVector(checker_colours(body.reference, body.reference))
-    else:
-        mesh.paint_uniform_color(CLAY)
-    mesh.compute_vertex_normals()
+        colours = checker_colours(body.reference, body.reference)
+    soup = np.zeros((3, 3 * room, 3))
+    for row, values in zip(soup, (body.vertices - home, normals, colours), strict=True):
+        row[: 3 * len(faces)] = values[faces].reshape(-1, 3)
+    mesh = geometry.TriangleMesh(
+        utility.Vector3dVector(soup[0]),
+        utility.Vector3iVector(np.arange(3 * room, dtype=np.int32).reshape(-1, 3)),
+    )
+    mesh.vertex_normals = utility.Vector3dVector(soup[1])
+    mesh.vertex_colors = utility.Vector3dVector(soup[2])
+    mesh.triangle_uvs = utility.Vector2dVector(uv)
     return mesh
 
 

@@ -139,7 +139,7 @@ def figure(
     with matplotlib.rc_context(style):
         # On a small page everything is drawn smaller, so that it still fits.
         dpi = DPI * min(1.0, size[0] / 480, size[1] / 360)
-        inches = tuple((length + 0.01) / dpi for length in size)
+        inches = ((size[0] + 0.01) / dpi, (size[1] + 0.01) / dpi)
         fig: Any = Figure(figsize=inches, dpi=dpi, layout=layout)
         fig.get_layout_engine().set(w_pad=0.14, h_pad=0.14)
         FigureCanvasAgg(fig)

@@ -1,0 +1,75 @@
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+# Opens the window, goes from a surface to a matrix and to a surface of another size, plays, and closes.
+SCRIPT = """
+import sys
+sys.path.insert(0, sys.argv[1])
+from conftest import make_products
+from reperform.viewer.browser import Results
+from reperform.viewer.session import Session
+from reperform.viewer.window import Window, open_window
+
+products = make_products()
+steps = ["mesh", "matrix", "surfaces", "performance"]
+tick, count = Window._tick, 0
+
+
+def act(window):
+    global count
+    count += 1
+    if count % 6 == 0:
+        place = count // 6
+        if place < len(steps):
+            window.session.select(steps[place])
+            window.refresh()
+            print(window.session.caption(), flush=True)
+        elif place == len(steps):
+            window.session.play()
+        elif place == len(steps) + 4:
+            print("moved", window.session.frame > 0, flush=True)
+            # Not from within a tick: Open3D is then walking through its windows.
+            window._gui.Application.instance.post_to_main_thread(window.window, window.window.close)
+    return tick(window) or True
+
+
+Window._tick = act
+open_window(Session(Results(products, steps), "mesh"), (640, 480))
+print("returned", flush=True)
+"""
+
+
+@pytest.fixture
+def display() -> Iterator[str]:
+    """A virtual screen of this test's own."""
+    server = shutil.which("Xvfb")
+    if server is None:
+        pytest.skip("Xvfb is not installed: apt-get install xvfb")
+    read, write = os.pipe()
+    command = [server, "-displayfd", str(write), "-screen", "0", "800x600x24", "-nolisten", "tcp", "-noreset"]
+    with subprocess.Popen(command, pass_fds=[write], stderr=subprocess.DEVNULL) as screen:
+        os.close(write)
+        with os.fdopen(read) as pipe:
+            number = pipe.readline().strip()
+        yield f":{number}"
+        screen.terminate()
+
+
+def test_the_window_opens_shows_every_kind_plays_and_closes(display: str) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", SCRIPT, str(Path(__file__).parent)],
+        env={**os.environ, "DISPLAY": display},
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    for line in ("matrix", "surfaces, frame 0 of 2", "performance, frame 0 of 12", "moved True", "returned"):
+        assert line in done.stdout
