@@ -44,7 +44,7 @@ class Document:
         return self.places.get(keys, Place(self.file, 1))
 
 
-def find_pipeline(name: str) -> Path:
+def find_pipeline(name: str, place: Place | None = None) -> Path:
     """The file of a pipeline: a path, or the bare name of a shipped one."""
     path = Path(name)
     if path.is_file():
@@ -54,7 +54,7 @@ def find_pipeline(name: str) -> Path:
         return shipped
     known = sorted(p.relative_to(SHIPPED).with_suffix("").as_posix() for p in SHIPPED.rglob("*.yaml"))
     raise DefinitionError(
-        f"no pipeline {name!r}: neither a file nor a shipped pipeline; {nearest(name, known)}"
+        f"no pipeline {name!r}: neither a file nor a shipped pipeline; {nearest(name, known)}", place
     )
 
 
@@ -66,10 +66,10 @@ def read_document(path: Path, sets: Sequence[str] = ()) -> Document:
     return document
 
 
-def _read(path: Path, above: tuple[Path, ...]) -> Document:
+def _read(path: Path, above: tuple[Path, ...], place: Place | None = None) -> Document:
     if path.resolve() in above:
         raise DefinitionError(
-            f"include: {path} includes itself by way of {' -> '.join(p.name for p in above)}"
+            f"include: {path} includes itself by way of {' -> '.join(p.name for p in above)}", place
         )
     source = read_yaml(path)
     name = path.stem
@@ -89,7 +89,9 @@ def _read(path: Path, above: tuple[Path, ...]) -> Document:
             )
         beside = path.parent / str(entry["pipeline"])
         inner = _read(
-            beside if beside.is_file() else find_pipeline(entry["pipeline"]), (*above, path.resolve())
+            beside if beside.is_file() else find_pipeline(str(entry["pipeline"]), where),
+            (*above, path.resolve()),
+            where,
         )
         inner.vars |= entry.get("vars", {})
         if "as" in entry:
@@ -99,6 +101,12 @@ def _read(path: Path, above: tuple[Path, ...]) -> Document:
     for key, value in source.value.items():
         if key != "include" and value is not None:
             setattr(own, key, value)
+    for variable, values in own.matrix.items():
+        if not isinstance(values, list) or not values:
+            raise DefinitionError(
+                f"matrix: {variable!r} must be a list of values, got {values!r}",
+                source.place("matrix", variable),
+            )
     for step, body in own.steps.items():
         if not isinstance(body, dict):
             raise DefinitionError(
@@ -247,6 +255,11 @@ def read_takes(document: Document) -> dict[str, dict[str, Any]]:
             if step not in document.steps:
                 raise DefinitionError(
                     f"take {name!r} sets parameters of an unknown step {step!r}: {nearest(step, document.steps)}",
+                    document.place("takes", name, "params", step),
+                )
+            if not isinstance(body["params"][step] or {}, dict):
+                raise DefinitionError(
+                    f"take {name!r}: parameters of step {step!r} must be a mapping",
                     document.place("takes", name, "params", step),
                 )
         found[name] = {"vars": {"take": name, **(body.get("vars") or {})}, "params": body.get("params") or {}}

@@ -277,13 +277,20 @@ class _Builder:
     def _parameters(self, node: NodeSpec, unit: str) -> dict[str, Any]:
         specs = {parameter.name: parameter for parameter in node.parameters}
         given = dict(self.body.get("params") or {})
+        own: dict[str, Any] = {}
         variables = {**self.document.vars, **self.values}
         if unit:
             variables |= self.takes[unit]["vars"]
-            given |= self.takes[unit]["params"].get(self.base) or {}
+            own = self.takes[unit]["params"].get(self.base) or {}
+            given |= own
         values: dict[str, Any] = {}
         for name, value in given.items():
-            where = self.document.place("steps", self.base, "params", name)
+            at = (
+                ("takes", unit, "params", self.base, name)
+                if name in own
+                else ("steps", self.base, "params", name)
+            )
+            where = self.document.place(*at)
             if name not in specs:
                 raise DefinitionError(
                     f"step {self.name!r}: node {node.name} has no parameter {name!r}: {nearest(name, specs)}",

@@ -75,7 +75,8 @@ def parse_yaml(text: str, file: str) -> Source:
         root = yaml.compose(text, _Loader)
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
-        line = mark.line + 1 if mark else 1
+        # what is cut off ends on the last line, not on the one after it
+        line = min(mark.line, len(text.splitlines()) - 1) + 1 if mark else 1
         problem = getattr(error, "problem", None) or str(error)
         raise DefinitionError(
             f"this is not YAML: {problem} (is the file cut off or the indentation off?)", Place(file, line)
