@@ -15,6 +15,7 @@ from typing import Any, Literal
 from reperform.graphs.batch import run_batch
 from reperform.graphs.messages import Batch, Outcome
 
+CONNECT_SECONDS = 10.0
 Scheduler = Literal["threads", "processes"]
 
 
@@ -99,7 +100,7 @@ class Workers(Executor):
         from distributed import Client
 
         try:
-            client = Client(address, timeout=10)
+            client = Client(address, timeout=CONNECT_SECONDS)
         except OSError as error:
             raise ConnectionError(
                 f"no dask scheduler answers at {address}: start one with `dask scheduler` ({error})"

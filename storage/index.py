@@ -118,9 +118,10 @@ class Index:
             try:
                 self._db.execute("PRAGMA journal_mode=WAL")
                 break
-            except StoreError:
+            except StoreError as error:
                 # SQLite does not wait here while another run, as new as this one, makes the same change
-                if attempt == 99:
+                code = getattr(error.__cause__, "sqlite_errorcode", 0) & 0xFF
+                if attempt == 99 or code not in (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED):
                     raise
                 time.sleep(0.05)
         self._db.execute("PRAGMA synchronous=NORMAL")

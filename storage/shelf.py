@@ -11,6 +11,7 @@ import functools
 import os
 import shutil
 import sys
+import time
 import uuid
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -74,7 +75,7 @@ class Shelf:
             (place / node).mkdir(parents=True, exist_ok=True)
             os.rename(place / beside, place / name)
         except OSError as error:
-            shutil.rmtree(place / beside, ignore_errors=True)
+            _remove_unfinished(place / beside)
             raise _explained(error, self.url) from error
         return name, size, self.stamp(name)
 
@@ -203,6 +204,15 @@ def open_shelf(url: str) -> Shelf:
 def forget_open_files() -> None:
     """Drop readers kept open: needed only after stored files were changed behind our back."""
     _open_reader.cache_clear()
+
+
+def _remove_unfinished(folder: Path) -> None:
+    """Delete a folder in which zarr's other writers may still be busy for a moment."""
+    for _ in range(20):
+        shutil.rmtree(folder, ignore_errors=True)
+        if not folder.exists():
+            return
+        time.sleep(0.05)
 
 
 def failures() -> tuple[type[Exception], ...]:

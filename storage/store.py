@@ -38,6 +38,7 @@ class Store:
             raise cannot_open(error, self.url) from error
         self.owner = f"{socket.gethostname()}:{os.getpid()}:{uuid.uuid4().hex[:8]}"
         self._beating: threading.Event | None = None
+        self._beat: threading.Thread | None = None
 
     def _open_index(self) -> Index:
         if self.shelf.folder is not None:
@@ -62,7 +63,8 @@ class Store:
                     index.heartbeat(self.owner)
             index.close()
 
-        threading.Thread(target=beat, name="claims", daemon=True).start()
+        self._beat = threading.Thread(target=beat, name="claims", daemon=True)
+        self._beat.start()
 
     def claim(self, keys: Sequence[bytes]) -> tuple[set[bytes], dict[bytes, Result]]:
         """Claim keys: those this run may compute now, and results that others have made meanwhile."""
@@ -75,8 +77,9 @@ class Store:
 
     def close(self) -> None:
         """End this run's claims and close the index."""
-        if self._beating is not None:
+        if self._beating is not None and self._beat is not None:
             self._beating.set()
+            self._beat.join(timeout=10)
             self.index.release(self.owner)
         self.index.close()
 
