@@ -207,11 +207,13 @@ def forget_open_files() -> None:
 
 
 def _remove_unfinished(folder: Path) -> None:
-    """Delete a folder in which zarr's other writers may still be busy for a moment."""
-    for _ in range(20):
-        shutil.rmtree(folder, ignore_errors=True)
-        if not folder.exists():
+    """Delete a folder that zarr's other writers, still busy for a moment, may make anew; gc removes what stays."""
+    quiet = 0
+    for _ in range(40):
+        quiet = 0 if folder.exists() else quiet + 1
+        if quiet == 5:
             return
+        shutil.rmtree(folder, ignore_errors=True)
         time.sleep(0.05)
 
 
