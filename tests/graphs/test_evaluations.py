@@ -1,0 +1,56 @@
+"""The evaluations that ship: each ends in a table with the figures that were asked for."""
+
+from pathlib import Path
+
+import pytest
+
+from reperform.graphs.document import SHIPPED
+from reperform.graphs.pipeline import Pipeline, read_pipeline
+
+EVALUATIONS = sorted(path.stem for path in (SHIPPED / "evaluation").glob("*.yaml"))
+FIGURES = {
+    "quickstart": {
+        "hull_volume_over_ideal": ("<=", 1.05),
+        "surface_error_mm": ("<=", 12.0),
+        "correspondence_error_mm": ("<=", 25.0),
+        "swap_rate": ("<=", 0.0),
+        "path_distance_error_m": ("<=", 0.05),
+        "path_time_error_s": ("<=", 0.08),
+        "heldout_psnr_db": (">=", 24.0),
+    },
+    "real": {
+        "surrey_iou_min": (">=", 0.85),
+        "surrey_iou_mean": (">=", 0.90),
+        "surrey_height_m": ("", None),
+        "surrey_heldout_psnr_db": ("", None),
+        "utrecht_iou_mean": (">=", 0.95),
+        "utrecht_height_m": ("", None),
+        "utrecht_frames": (">=", 200.0),
+        "samba_join_acceleration_ratio": ("<=", 1.0),
+    },
+}
+
+
+def read(name: str, data: Path) -> Pipeline:
+    return read_pipeline(f"evaluation/{name}", [f"data={data}"])
+
+
+@pytest.mark.parametrize("name", EVALUATIONS)
+def test_an_evaluation_ends_in_a_table(name, data_folder):
+    pipeline = read(name, data_folder)
+    assert pipeline.steps["table"].node.output.endswith(".Table")
+    assert list(pipeline.steps)[-1] == "table"
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_its_rows_are_the_figures_asked_for_with_their_targets(name, data_folder):
+    pipeline = read(name, data_folder)
+    rows = [pipeline.steps[step].parameters("") for step in pipeline.steps["table"].inputs["figures"].steps]
+    stated = {row["figure"]: (row["side"], row["target"]) for row in rows}
+    assert {figure: stated.get(figure) for figure in FIGURES[name]} == FIGURES[name]
+
+
+def test_footage_that_is_missing_is_told_of(monkeypatch, tmp_path):
+    monkeypatch.setenv("REPERFORM_DATA", str(tmp_path / "nowhere"))
+    with pytest.raises(ValueError, match=r"REPERFORM_DATA names .*nowhere"):
+        read_pipeline("evaluation/real")
