@@ -42,6 +42,8 @@ def calibration(
 
     Raises ValueError naming the file and the camera for missing cameras, malformed files, matrices that are no
     rotation or no camera matrix, and an image size that nobody tells or that the principal point lies outside.
+
+    Source: Zhang, IEEE PAMI 22, 2000 (the camera model, with OpenCV's five distortion coefficients); 004 (the studio).
     """
     path = Path(file)
     records = _records(path, pattern, format)

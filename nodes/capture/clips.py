@@ -50,6 +50,8 @@ def clips(
 
     Raises ValueError for a missing camera, an unreadable or truncated file, and for counts, frame numbers, sizes or
     rates that differ between cameras.
+
+    Source: reading of files; no published method.
     """
     matched = match_files(Path(folder), pattern)
     if not matched:

@@ -21,6 +21,8 @@ def decode(
 
     Only this picture is decoded (of a video: from the key frame before it, or on from the picture before).
     Raises ValueError naming file and picture where it cannot be decoded or is not of the indexed size.
+
+    Source: decoding by FFmpeg and OpenCV; no published method.
     """
     width, height = (int(n) for n in clips.image_size)
     path = Path(folder) / str(clips.file)

@@ -40,6 +40,8 @@ def twin(
     slower than 0.45 m/s, an estimate: the clips were retargeted without contacts and their feet slide.
 
     Raises ValueError for a missing clip (nearest names listed), file or array, or a damaged file.
+
+    Source: reading of files; no published method.
     """
     root = Path(folder)
     rest = _load(root / "rest.npz", ("vertices", "faces", "uv", "faces_uv"))
