@@ -57,5 +57,9 @@ def swapped_limbs(
     for row, (own, other) in enumerate(both):
         points = aligned[limb == own]
         if len(points) and own in trees and other in trees:
-            swapped[row] = trees[other].query(points)[0].mean() < trees[own].query(points)[0].mean()
+            swapped[row] = _mean_distance(trees[other], points) < _mean_distance(trees[own], points)
     return swapped
+
+
+def _mean_distance(tree: cKDTree, points: np.ndarray) -> float:
+    return float(np.mean(tree.query(points)[0]))
