@@ -74,6 +74,7 @@ def collect(
         for manifest in dropped:
             store.shelf.remove(MANIFESTS, manifest.name)
         _sweep(store, now)
+        store.index.compact()
     return len(gone), freed
 
 
