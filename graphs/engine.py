@@ -14,14 +14,13 @@ from collections.abc import Sequence
 from typing import Any
 
 from reperform.graphs.errors import RunError
+from reperform.graphs.keys import output_key
 from reperform.graphs.listener import Progress, Silent
-from reperform.graphs.messages import Batch
-from reperform.graphs.pace import Pace, memory
+from reperform.graphs.pace import Pace, Room
 from reperform.graphs.pipeline import Pipeline
-from reperform.graphs.report import RunReport, step_reports
+from reperform.graphs.report import RunReport, failure, step_reports
 from reperform.graphs.resolve import Resolver
-from reperform.graphs.unit import Name, Unit, Work
-from reperform.storage.digest import digest_bytes
+from reperform.graphs.unit import Name, Unit, Work, batch_of
 from reperform.storage.errors import DamagedResult, StoreError
 from reperform.storage.index import Manifest, Records, Result, Segment
 from reperform.storage.store import Store
@@ -53,13 +52,14 @@ class Engine:
         self._ready: deque[Unit] = deque()
         self._open: deque[Unit] = deque()
         self._in_flight: dict[int, tuple[Unit, Work, list[int]]] = {}
-        self._load: list[float] = [0.0, 0.0]
+        self._room = Room()
+        self._waiting: dict[Name, Unit] = {}
         self._tag = 0
         self._pace = Pace(store.index)
         # units whose results lie in a segment that was found damaged
         self._broken: dict[str, set[Name]] = {}
         self._store_error: str | None = None
-        self._closed: set[str] = set()
+        self._left: dict[str, set[Name]] = {name: set() for name in self.chosen}
         self.notes: list[str] = []
         self._make_units()
 
@@ -71,6 +71,7 @@ class Engine:
             labels = ("*",) if step.node.output_many == "dataset" else step.units
             for label in labels:
                 unit = self.units[name, label] = Unit(step, label)
+                self._left[name].add(unit.name)
                 unit.missing = {self._unit_name(*need) for need in self.resolver.needs(step, label)}
                 for need in unit.missing:
                     self.units[need].consumers.append(unit.name)
@@ -168,7 +169,7 @@ class Engine:
         if step.node.volatile:
             return False
         if step.node.output_many == "dataset":
-            keys = {take: _output_key(unit.key, take) for take in step.takes}
+            keys = {take: output_key(unit.key, take) for take in step.takes}
         else:
             keys = {unit.label: unit.key}
         manifests = {label: self.store.index.manifest(key) for label, key in keys.items()}
@@ -194,7 +195,7 @@ class Engine:
             consumer.missing.discard(unit.name)
             if not consumer.missing and consumer.status == "waiting":
                 self._ready.append(consumer)
-        self._close_step(unit.step.name)
+        self._close(unit)
 
     def _fail(self, unit: Unit, *errors: str) -> None:
         unit.errors += errors
@@ -203,13 +204,14 @@ class Engine:
         if not self._keep_going:
             self._stopping = True
         self._skip_consumers(unit)
-        self._close_step(unit.step.name)
+        self._close(unit)
 
     def _skip_consumers(self, unit: Unit) -> None:
         for name in unit.consumers:
             consumer = self.units[name]
             if consumer.status in ("waiting", "done"):
                 consumer.status = "skipped"
+                self._close(consumer)
                 self._skip_consumers(consumer)
 
     # -- sending work out ---------------------------------------------------------------------------------------
@@ -222,25 +224,18 @@ class Engine:
             while work and work.queue and not self._stopping and self._has_room(unit):
                 self._send(unit, work)
             if unit.status == "open" and work and not work.is_over and not self._stopping:
-                if self._full():
+                if self._room.is_full:
                     return
                 self._open.rotate(-1)
             else:
                 self._open.popleft()
 
-    def _full(self) -> bool:
-        return self._executor is not None and self._load[0] >= self._executor.slots
-
     def _has_room(self, unit: Unit) -> bool:
         if self._executor is None:
             self.store.start_heartbeat()
             self._executor = self._open_executor()
-        node = unit.step.node
-        if not self._in_flight:
-            return True
-        return (
-            self._load[0] + node.threads <= self._executor.slots and self._load[1] + node.memory <= memory()
-        )
+            self._room.slots = self._executor.slots
+        return self._room.fits(unit.step.node)
 
     def _send(self, unit: Unit, work: Work) -> None:
         size = self._pace.batch_size(unit.step.node.name, len(work.queue), self._executor.slots)
@@ -250,6 +245,7 @@ class Engine:
         work.results |= done
         if work.outputs is not None:
             positions = positions if mine else []
+            unit.cached += len(done) == len(keys)
             if len(done) < len(keys) and not mine:
                 work.elsewhere.append(0)
         else:
@@ -260,32 +256,22 @@ class Engine:
             unit.cached += found
             self.progress.advance(unit.step.name, 0, found)
             positions = [k for k in positions if work.keys[k] in mine]
+        if work.elsewhere:
+            self._waiting[unit.name] = unit
         if not positions:
             self._settle(unit)
             return
-        node, output = unit.step.node, self.pipeline.catalogue.products[unit.step.node.output]
-        batch = Batch(
-            self.store.url,
-            node.name,
-            (node.module, node.function),
-            node.over,
-            (output.module, output.name.rsplit(".", 1)[1]),
-            output.fields,
-            work.outputs,
-            work.parameters,
-            work.feeds,
-            tuple(work.items[k] for k in positions),
-            node.threads,
-        )
+        product = self.pipeline.catalogue.products[unit.step.node.output]
+        batch = batch_of(self.store.url, unit, work, positions, product)
+        node = unit.step.node
         self._tag += 1
         self._in_flight[self._tag] = (unit, work, positions)
-        self._load[0] += node.threads
-        self._load[1] += node.memory
+        self._room.take(node)
         work.running += 1
         self._executor.submit(self._tag, batch)
 
     def _waits_elsewhere(self) -> bool:
-        return not self._stopping and any(unit.work and unit.work.elsewhere for unit in self._open)
+        return not self._stopping and bool(self._waiting)
 
     # -- taking outcomes in -------------------------------------------------------------------------------------
 
@@ -298,17 +284,17 @@ class Engine:
             if got is not None:
                 self._take(*got)
         if waiting:
-            for unit in list(self._open):
-                if unit.work and unit.work.elsewhere:
-                    # ask again: the other run has finished them, still has them, or is gone
+            # ask again: the other run has finished them, still has them, or is gone
+            for unit in self._waiting.values():
+                if unit.work:
                     unit.work.queue.extend(unit.work.elsewhere)
                     unit.work.elsewhere.clear()
+            self._waiting.clear()
 
     def _take(self, tag: int, outcome: Any) -> None:
         unit, work, positions = self._in_flight.pop(tag)
         node = unit.step.node
-        self._load[0] -= node.threads
-        self._load[1] -= node.memory
+        self._room.give(node)
         work.running -= 1
         if outcome.store_error:
             # what else is in flight may still come to a good end
@@ -344,24 +330,13 @@ class Engine:
         ]
         for position, item in errors:
             work.failed[position] = item.error
-            unit.errors.append(self._explain(unit, work, position, item))
+            unit.errors.append(failure(unit, work.items[position], item, self._resume))
         computed = 1 if work.outputs is not None else len(positions)
         unit.computed += computed - len(errors)
         unit.failed += len(errors)
         self.progress.advance(unit.step.name, computed=computed - len(errors), failed=len(errors))
         if errors and not self._keep_going:
             self._stopping = True
-
-    def _explain(self, unit: Unit, work: Work, position: int, item: Any) -> str:
-        at = work.items[position]
-        where = (
-            ""
-            if at.frame is None
-            else f", frame {at.frame}" + ("" if at.camera is None else f", camera {at.camera}")
-        )
-        head = f"step {unit.item_text!r}{where} (node {unit.step.node.name}) failed: {item.error}"
-        trace = f"\n{item.trace}" if os.environ.get("REPERFORM_TRACEBACK") and item.trace else ""
-        return f"{head}\n  finished items are kept; rerun only what is missing with: {self._resume} {unit.step.name}{trace}"
 
     def _settle(self, unit: Unit) -> None:
         """Close a unit that has nothing left to do."""
@@ -371,7 +346,7 @@ class Engine:
         if work.failed:
             unit.status = "failed"
             self._skip_consumers(unit)
-            self._close_step(unit.step.name)
+            self._close(unit)
             return
         from reperform.graphs.complete import complete
 
@@ -424,21 +399,15 @@ class Engine:
             for name in self.store.index.segments_of(manifest.key)
         }
 
-    def _close_step(self, step: str) -> None:
-        if step not in self._closed and all(
-            u.status in ("done", "failed", "skipped") for u in self._units_of(step)
-        ):
-            self._closed.add(step)
-            self.progress.start(step, 0)
-            self.progress.finish(step)
-
-    def _units_of(self, step: str) -> list[Unit]:
-        labels = (
-            self.pipeline.steps[step].units
-            if self.pipeline.steps[step].node.output_many != "dataset"
-            else ("*",)
-        )
-        return [self.units[step, label] for label in labels]
+    def _close(self, unit: Unit) -> None:
+        """A unit is done, failed or skipped; with its last one the step is over."""
+        step = unit.step.name
+        left = self._left[step]
+        if unit.name in left:
+            left.discard(unit.name)
+            if not left:
+                self.progress.start(step, 0)
+                self.progress.finish(step)
 
     def _note(self, notes: Sequence[str]) -> None:
         for note in notes:
@@ -453,7 +422,3 @@ class Engine:
         rows = changed_parts(self.pipeline.name, self.units.values(), self.store.index)
         if rows:
             self.store.index.remember(self.pipeline.name, rows)
-
-
-def _output_key(key: bytes, take: str) -> bytes:
-    return digest_bytes(key, take.encode())

@@ -32,3 +32,8 @@ def unit_key(code: bytes, ports: Sequence[tuple[str, Sequence[tuple[str, bytes]]
         for label, digest in inputs:
             parts += [label.encode(), digest]
     return digest_bytes(b"unit", *parts)
+
+
+def output_key(key: bytes, take: str) -> bytes:
+    """Key of the output for one take of a node that gives one product per take."""
+    return digest_bytes(key, take.encode())

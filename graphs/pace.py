@@ -1,9 +1,10 @@
-"""How many items make a batch: by the pace of a node, measured so far. It changes no key and no result."""
+"""How many items make a batch, and how many batches run at a time. It changes no key and no result."""
 
 from __future__ import annotations
 
 import os
 
+from reperform.nodes.catalogue import NodeSpec
 from reperform.storage.index import Index
 
 BATCH_SECONDS = 0.5
@@ -35,6 +36,36 @@ class Pace:
         )
 
 
-def memory() -> float:
-    """GB of memory that batches in flight may declare together."""
-    return 0.8 * os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") / 1e9
+class Room:
+    """Threads and memory that the batches in flight have declared. One batch always fits, however large."""
+
+    def __init__(self) -> None:
+        self.slots = 1
+        self._memory = 0.8 * os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") / 1e9
+        self._batches, self._threads, self._used = 0, 0, 0.0
+
+    @property
+    def is_full(self) -> bool:
+        """Whether not even a batch of one thread fits."""
+        return self._threads >= self.slots
+
+    def fits(self, node: NodeSpec) -> bool:
+        """Whether there is room for a batch of a node."""
+        fits = self._threads + node.threads <= self.slots and self._used + node.memory <= self._memory
+        return fits or self._batches == 0
+
+    def take(self, node: NodeSpec) -> None:
+        """A batch of a node starts."""
+        self._batches, self._threads, self._used = (
+            self._batches + 1,
+            self._threads + node.threads,
+            self._used + node.memory,
+        )
+
+    def give(self, node: NodeSpec) -> None:
+        """It is over."""
+        self._batches, self._threads, self._used = (
+            self._batches - 1,
+            self._threads - node.threads,
+            self._used - node.memory,
+        )

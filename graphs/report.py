@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from reperform.graphs.messages import Item, ItemOutcome
 from reperform.graphs.unit import Name, Unit
 
 
@@ -58,3 +60,15 @@ def step_reports(chosen: Sequence[str], units: Mapping[Name, Unit]) -> dict[str,
         name: StepReport(int(c + k + f + s), int(c), int(k), int(f), int(s), seconds)
         for name, (c, k, f, s, seconds) in sums.items()
     }
+
+
+def failure(unit: Unit, item: Item, outcome: ItemOutcome, resume: str) -> str:
+    """What a user is told of an item that failed: where, why, and the command that reruns only what is missing."""
+    frame = "" if item.frame is None else f", frame {item.frame}"
+    camera = "" if item.camera is None else f", camera {item.camera}"
+    where = f"step {unit.item_text!r}{frame}{camera} (node {unit.step.node.name})"
+    trace = f"\n{outcome.trace}" if os.environ.get("REPERFORM_TRACEBACK") and outcome.trace else ""
+    return (
+        f"{where} failed: {outcome.error}\n"
+        f"  finished items are kept; rerun only what is missing with: {resume} {unit.step.name}{trace}"
+    )

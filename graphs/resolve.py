@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from reperform.graphs.keys import code_key, product_digest, unit_key
+from reperform.graphs.keys import code_key, output_key, product_digest, unit_key
 from reperform.graphs.messages import Feed, Item
 from reperform.graphs.parameters import canonical
 from reperform.graphs.pipeline import Pipeline, Step
@@ -97,11 +97,7 @@ class Resolver:
         feeds = {port.name: self._feed(port, part, manifests) for port, part, manifests in inputs}
         if node.over not in ("frame", "view"):
             outputs = unit.step.takes if node.output_many == "dataset" else None
-            keys = (
-                [digest_bytes(unit.key, take.encode()) for take in outputs]
-                if outputs is not None
-                else [unit.key]
-            )
+            keys = [output_key(unit.key, take) for take in outputs] if outputs is not None else [unit.key]
             return Work(
                 "whole", {}, [Item()], keys, tuple(feeds.values()), unit.step.parameters(unit.label), outputs
             )

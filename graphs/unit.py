@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from reperform.graphs.messages import Feed, Item
+from reperform.graphs.messages import Batch, Feed, Item
 from reperform.graphs.pipeline import Step
+from reperform.nodes.catalogue import ProductSpec
 from reperform.storage.index import Manifest, Result
 
 Name = tuple[str, str]  # step, unit
@@ -77,3 +78,21 @@ class Work:
     def is_over(self) -> bool:
         """Whether no item is left to compute, here or elsewhere."""
         return not self.queue and not self.elsewhere and self.running == 0
+
+
+def batch_of(url: str, unit: Unit, work: Work, positions: Sequence[int], product: ProductSpec) -> Batch:
+    """Some items of a unit as a batch for a worker."""
+    node = unit.step.node
+    return Batch(
+        url,
+        node.name,
+        (node.module, node.function),
+        node.over,
+        (product.module, product.name.rsplit(".", 1)[1]),
+        product.fields,
+        work.outputs,
+        work.parameters,
+        work.feeds,
+        tuple(work.items[k] for k in positions),
+        node.threads,
+    )

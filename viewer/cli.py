@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shlex
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -441,14 +442,8 @@ def _run(
     from reperform.viewer.progress import Progress
 
     loaded = _load(pipeline, sets)
-    resume = " ".join(
-        [
-            "reperform run",
-            pipeline,
-            *(f"--set {text}" for text in sets),
-            *(["--store", store] if store else []),
-        ]
-    )
+    given = [part for text in sets for part in ("--set", text)] + (["--store", store] if store else [])
+    resume = shlex.join(["reperform", "run", pipeline, *given])
     with Progress() as progress:
         return run_pipeline(loaded, store=store, steps=steps, progress=progress, resume=resume, **options)
 
