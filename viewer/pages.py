@@ -49,11 +49,14 @@ def _graph_steps(
     for name in names:
         step = pipeline.steps[name]
         inputs = {
-            port if len(wired.steps) == 1 else f"{port} ({source})": source + (f".{wired.part}" if wired.part else "")
+            port if len(wired.steps) == 1 else f"{port} ({source})": source
+            + (f".{wired.part}" if wired.part else "")
             for port, wired in step.inputs.items()
             for source in wired.steps
         }
-        graph_steps.append(GraphStep(name, step.node.name, inputs, states[name], (details or {}).get(name, "")))
+        graph_steps.append(
+            GraphStep(name, step.node.name, inputs, states[name], (details or {}).get(name, ""))
+        )
     return graph_steps
 
 
