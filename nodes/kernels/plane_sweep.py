@@ -7,6 +7,8 @@ from numba import njit
 
 # Variance (sum over the channels, grey levels squared) that is noise and not texture.
 NOISE = 30.0
+# Share of a patch that must show the performer.
+_LEAST = 0.85
 _QUICK = {"reassoc", "contract", "arcp"}
 
 
@@ -118,27 +120,28 @@ def _sample(image: np.ndarray, row: np.ndarray, frame: np.ndarray, half: int, pa
     inside = x0 - reach_x >= 0 and y0 - reach_y >= 0
     if not (inside and x0 + reach_x < image.shape[1] - 1 and y0 + reach_y < image.shape[0] - 1):
         return -1.0
-    sum0, sum1, sum2 = np.float32(0), np.float32(0), np.float32(0)
+    sum0, sum1, sum2, cover = np.float32(0), np.float32(0), np.float32(0), np.float32(0)
+    one = np.float32(1)
     i = 0
     for a in range(-half, half + 1):
         for b in range(-half, half + 1):
             x, y = x0 + a * ax + b * bx, y0 + a * ay + b * by
             c, r = int(x), int(y)
             fx, fy = np.float32(x - c), np.float32(y - r)
-            one = np.float32(1)
             w00, w01, w10, w11 = (one - fx) * (one - fy), fx * (one - fy), (one - fx) * fy, fx * fy
-            for j in range(3):
-                patch[i + j] = (
-                    image[r, c, j] * w00
-                    + image[r, c + 1, j] * w01
-                    + image[r + 1, c, j] * w10
-                    + image[r + 1, c + 1, j] * w11
-                )
-            sum0 += patch[i]
-            sum1 += patch[i + 1]
-            sum2 += patch[i + 2]
+            top, bottom = image[r], image[r + 1]
+            red = top[c, 0] * w00 + top[c + 1, 0] * w01 + bottom[c, 0] * w10 + bottom[c + 1, 0] * w11
+            green = top[c, 1] * w00 + top[c + 1, 1] * w01 + bottom[c, 1] * w10 + bottom[c + 1, 1] * w11
+            blue = top[c, 2] * w00 + top[c + 1, 2] * w01 + bottom[c, 2] * w10 + bottom[c + 1, 2] * w11
+            cover += top[c, 3] * w00 + top[c + 1, 3] * w01 + bottom[c, 3] * w10 + bottom[c + 1, 3] * w11
+            patch[i], patch[i + 1], patch[i + 2] = red, green, blue
+            sum0 += red
+            sum1 += green
+            sum2 += blue
             i += 3
     count = np.float32(i // 3)
+    if cover < _LEAST * count:
+        return -1.0
     sum0, sum1, sum2 = sum0 / count, sum1 / count, sum2 / count
     power = np.float32(0)
     for i in range(0, len(patch), 3):
@@ -147,7 +150,7 @@ def _sample(image: np.ndarray, row: np.ndarray, frame: np.ndarray, half: int, pa
         patch[i + 2] -= sum2
     for i in range(len(patch)):
         power += patch[i] * patch[i]
-    return power + NOISE * count
+    return float(power + NOISE * count)
 
 
 @njit(cache=True, nogil=True, inline="always")

@@ -104,7 +104,7 @@ def refine(
     refuse_mismatch("refine", footage.images.shape[:3], cameras.image_size, cameras.name)
     refuse_mismatch("refine", mattes.alpha.shape, cameras.image_size, cameras.name)
     rig = (cameras.matrix, cameras.rotation, cameras.translation, cameras.distortion)
-    images = np.stack([cv2.GaussianBlur(image, (0, 0), 0.6) for image in footage.images]).astype(np.float32)
+    images = _pictures(footage.images, mattes.alpha)
     points, faces = split_long_edges(np.asarray(surfaces.vertices, np.float64), surfaces.faces, edge)
     mesh = _mesh(faces, len(points))
     spacing = edge / 3.5
@@ -119,6 +119,15 @@ def refine(
     if len(points) > budget:
         points, faces = decimate(points, faces, budget)
     return Surfaces(points.astype(np.float32), faces.astype(np.int32), surfaces.fps)
+
+
+def _pictures(images: np.ndarray, alpha: np.ndarray) -> np.ndarray:
+    """Pictures free of the finest noise with their matte, (camera, y, x, 4) float32: red, green, blue, 0..1."""
+    pictures = np.empty((*alpha.shape, 4), np.float32)
+    for picture, image, matte in zip(pictures, images, alpha, strict=True):
+        picture[..., :3] = cv2.GaussianBlur(image, (0, 0), 0.6)
+        picture[..., 3] = matte / np.float32(255)
+    return pictures
 
 
 def _mesh(faces: np.ndarray, count: int) -> Mesh:
