@@ -6,6 +6,7 @@ LIBRARIES := libusb-1.0-0 libegl1 libgl1 libgl1-mesa-dri libx11-6 libudev1 libid
 	libosmesa6 xvfb xdotool x11-utils scrot
 
 # uv is several times faster; where it cannot reach an index that pip is set up for, pip does it
+comma := ,
 install = $(BIN)/uv pip install --quiet --python $(BIN)/python $(1) || $(BIN)/python -m pip install --quiet $(1)
 
 .PHONY: demo test lint environment test-environment system clean
@@ -40,7 +41,7 @@ $(VENV)/.installed: pyproject.toml | $(VENV)/bin/python
 	@touch $@
 
 $(VENV)/.test-installed: pyproject.toml | $(VENV)/bin/python
-	$(call install,--editable '.[test,s3,usd]')
+	$(call install,--editable '.[test$(comma)s3$(comma)usd]')
 	@touch $@ $(VENV)/.installed
 
 # Only the window and its tests need these; tests that lack them are skipped and say so.
