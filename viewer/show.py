@@ -104,5 +104,5 @@ def _line(name: str, field: Mapping[str, Any]) -> str:
     if "values" in field:
         told = ", ".join(field["values"][:12])
     else:
-        told = "{:.5g} .. {:.5g}{}".format(*field["range"], unit) if "range" in field else ""
+        told = " .. ".join(f"{bound:.5g}" for bound in field["range"]) + unit if "range" in field else ""
     return f"  {name:28} {field['dtype']:8} {shape or 'scalar':40} {told}"

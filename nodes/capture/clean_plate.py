@@ -29,7 +29,7 @@ def clean_plate(
     Source: 004 section 2.2 (foreground extraction); Rousseeuw and Croux 1993, JASA (median absolute deviation).
     Departure: midmean instead of mean, so that a person who walks through for a few frames leaves no trace.
     """
-    frames = len(clips.index)
+    frames = len(clips.position)
     chosen = np.unique(np.linspace(0, frames - 1, min(pictures, frames)).round().astype(int))
     means, deviations = [], []
     for camera in range(len(clips.name)):
@@ -37,7 +37,7 @@ def clean_plate(
         stack = np.stack(
             [
                 read_picture(
-                    Path(folder) / str(clips.file[k, camera]), int(clips.index[k, camera]), (width, height)
+                    Path(folder) / str(clips.file[k, camera]), int(clips.position[k, camera]), (width, height)
                 )
                 for k in chosen
             ]

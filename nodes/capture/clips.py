@@ -72,7 +72,7 @@ def clips(
     rate = (fps or strips[0].rate) / step
     return Clips(
         file=np.array([[strip.files[k] for strip in strips] for k in wanted], dtype=str),
-        index=np.array([[strip.indices[k] for strip in strips] for k in wanted], np.int32),
+        position=np.array([[strip.indices[k] for strip in strips] for k in wanted], np.int32),
         digest=np.array([[strip.digests[k] for strip in strips] for k in wanted], dtype=str),
         image_size=np.array([strip.size for strip in strips], np.int32),
         name=np.array(names, dtype=str),

@@ -26,4 +26,4 @@ def decode(
     """
     width, height = (int(n) for n in clips.image_size)
     path = Path(folder) / str(clips.file)
-    return Footage(read_picture(path, int(clips.index), (width, height)), clips.fps)
+    return Footage(read_picture(path, int(clips.position), (width, height)), clips.fps)

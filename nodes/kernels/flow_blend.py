@@ -93,7 +93,7 @@ def _flow(first: np.ndarray, second: np.ndarray, method: Flow) -> np.ndarray:
         start = np.zeros((*first.shape, 2), np.float32)
         flow = cv2.calcOpticalFlowFarneback(first, second, start, 0.5, 4, 15, 3, 5, 1.1, 0)
     else:
-        flow = cv2.DISOpticalFlow_create(cv2.DISOPTICAL_FLOW_PRESET_MEDIUM).calc(first, second, None)
+        flow = cv2.DISOpticalFlow.create(cv2.DISOPTICAL_FLOW_PRESET_MEDIUM).calc(first, second, None)
     return np.asarray(flow, np.float32)
 
 

@@ -13,7 +13,7 @@ class Clips(NamedTuple):
     # relative to the folder of the take, with forward slashes
     file: Annotated[np.ndarray, Axes("frame", "camera", dtype="str")]
     # which picture of a video; 0 for an image file
-    index: Annotated[np.ndarray, Axes("frame", "camera", dtype="int32")]
+    position: Annotated[np.ndarray, Axes("frame", "camera", dtype="int32")]
     # blake2b of the image file, or of the video file and the index
     digest: Annotated[np.ndarray, Axes("frame", "camera", dtype="str")]
     # width, height

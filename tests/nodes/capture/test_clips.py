@@ -46,7 +46,7 @@ def test_first_count_and_step_choose_frames_and_set_the_rate(tmp_path: Path) -> 
     for camera in "ab":
         write_video(tmp_path / camera / "take.mp4", 10)
     found = clips(folder=str(tmp_path), pattern="{camera}/take.mp4", first=1, count=3, step=2)
-    assert found.index[:, 0].tolist() == [1, 3, 5]
+    assert found.position[:, 0].tolist() == [1, 3, 5]
     assert float(found.fps) == 12.5
     assert len(set(found.digest.ravel().tolist())) == 3
 
@@ -64,7 +64,7 @@ def test_different_counts_are_refused_with_the_counts_and_the_cure(tmp_path: Pat
     write_video(tmp_path / "b.mp4", 6)
     with pytest.raises(ValueError, match=r"a: 4, b: 6: set count \(at most 4\)"):
         clips(folder=str(tmp_path), pattern="{camera}.mp4")
-    assert len(clips(folder=str(tmp_path), pattern="{camera}.mp4", count=4).index) == 4
+    assert len(clips(folder=str(tmp_path), pattern="{camera}.mp4", count=4).position) == 4
     with pytest.raises(ValueError, match="camera a has 4"):
         clips(folder=str(tmp_path), pattern="{camera}.mp4", count=5)
 
@@ -75,7 +75,7 @@ def test_a_missing_number_is_named(tmp_path: Path) -> None:
             write_image(tmp_path / camera / f"{frame}.png", frame)
     with pytest.raises(ValueError, match="frame 2 is there for camera a but not for camera b"):
         clips(folder=str(tmp_path), pattern="{camera}/{frame}.png")
-    assert len(clips(folder=str(tmp_path), pattern="{camera}/*.png").index) == 3
+    assert len(clips(folder=str(tmp_path), pattern="{camera}/*.png").position) == 3
 
 
 def test_sizes_must_agree(tmp_path: Path) -> None:
@@ -110,7 +110,7 @@ def test_an_empty_folder_and_a_bad_placeholder_are_refused(tmp_path: Path) -> No
 def test_real_footage_is_indexed(data_folder: Path) -> None:
     captures = data_folder / "captures"
     found = clips(folder=str(captures / "utrecht_seated4"), pattern="cam{camera}/video.avi")
-    assert found.index.shape == (426, 4)
+    assert found.position.shape == (426, 4)
     assert float(found.fps) == 50
     found = clips(folder=str(captures / "surrey_dancer8"), pattern="cam{camera}.png")
     assert found.file.shape == (1, 8)

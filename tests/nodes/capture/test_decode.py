@@ -14,7 +14,7 @@ from reperform.nodes.products.clips import Clips
 def view(index: Clips, frame: int, camera: int) -> Clips:
     return Clips(
         index.file[frame, camera],
-        index.index[frame, camera],
+        index.position[frame, camera],
         index.digest[frame, camera],
         index.image_size[camera],
         index.name[camera],
@@ -51,7 +51,7 @@ def number(picture: np.ndarray) -> int:
 def test_random_access_is_exact_to_the_frame(tmp_path: Path, name: str, codec: str, options: dict) -> None:
     write_counting_video(tmp_path / name, 200, codec, options)
     index = clips(folder=str(tmp_path), pattern=name)
-    assert len(index.index) == 200
+    assert len(index.position) == 200
     order = np.random.default_rng(3).permutation(200)[:30].tolist() + [50, 51, 52, 199, 0]
     for k in order:
         assert number(decode(view(index, k, 0), folder=str(tmp_path)).images) == k
@@ -90,7 +90,7 @@ def test_a_damaged_or_missing_picture_is_named(tmp_path: Path) -> None:
 def test_a_picture_past_the_end_is_named(tmp_path: Path) -> None:
     write_counting_video(tmp_path / "v.mp4", 5, "libx264", {})
     index = clips(folder=str(tmp_path), pattern="v.mp4")
-    beyond = view(index, 4, 0)._replace(index=np.int32(9))
+    beyond = view(index, 4, 0)._replace(position=np.int32(9))
     with pytest.raises(ValueError, match=r"v\.mp4: picture 9 cannot be decoded.*ends after 5"):
         decode(beyond, folder=str(tmp_path))
     assert number(decode(view(index, 4, 0), folder=str(tmp_path)).images) == 4
