@@ -7,6 +7,7 @@ from typing import Annotated, Literal, NamedTuple
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from reperform.nodes.align.frame_views import FrameViews
 from reperform.nodes.declaration import Param, node
 from reperform.nodes.kernels.closest_point import closest_points
 from reperform.nodes.kernels.mesh_geometry import edges, face_areas, volume
@@ -22,9 +23,12 @@ from reperform.nodes.kernels.registration import (
 from reperform.nodes.kernels.registration import register as fit
 from reperform.nodes.kernels.spanning_tree import rehang
 from reperform.nodes.kernels.surface_pull import FitTarget, fit_target
+from reperform.nodes.kernels.take_chains import chain_takes
 from reperform.nodes.kernels.turn_search import likely_turns, turn_matrix
 from reperform.nodes.product import Dataset
 from reperform.nodes.products.aligned import AlignedSequence
+from reperform.nodes.products.cameras import Cameras
+from reperform.nodes.products.footage import Footage
 from reperform.nodes.products.mesh import MeshSequence, Surfaces
 from reperform.nodes.products.motion import ShapeTree
 
@@ -39,11 +43,17 @@ _NORMAL_LENGTH = 0.15
 def register(
     surfaces: Dataset[Surfaces],
     tree: ShapeTree,
+    footage: Dataset[Footage] | None = None,
+    cameras: Dataset[Cameras] | None = None,
     *,
     root: Annotated[
         Literal["spread", "tree"],
         Param(about="spread: the frame whose surface shows most; tree: the tree's own root"),
-    ] = "tree",
+    ] = "spread",
+    route: Annotated[
+        Literal["takes", "tree"],
+        Param(about="takes: each in time, joined by the tree's shortest edges; tree: along the tree"),
+    ] = "takes",
     patches: Annotated[int, Param("nodes", 8, 500, "of the coarsest deformation graph")] = 60,
     levels: Annotated[int, Param("levels", 1, 5, "each with twice as many nodes as the last")] = 3,
     reach: Annotated[
@@ -60,6 +70,10 @@ def register(
     prior: Annotated[
         float, Param("1", 0.0, 10.0, "pull of the expected place against one closest point")
     ] = 0.03,
+    texture: Annotated[
+        float, Param("1", 0.0, 100.0, "pull of one camera's track against one closest point")
+    ] = 2.0,
+    round_trip: Annotated[float, Param("px", 0.1, 20.0, "largest error of a track followed back")] = 1.0,
     residual_gate: Annotated[float, Param("m", 0.0, 1.0, "largest residual of a trusted frame")] = 0.02,
     stretch_gate: Annotated[float, Param("1", 0.0, 10.0, "largest stretch of a trusted frame")] = 0.3,
 ) -> Dataset[AlignedSequence]:
@@ -71,33 +85,51 @@ def register(
     graphs, E = sum rho(x_i - y_i) + stiffness sum_(jk) |R_j a_jk - (g_k - g_j)|^2, with rho Welsch's loss
     of two-way closest points of compatible normals and a_jk the root's lengths in the parent's pose.
 
+    Where footage and cameras are given, E has a term texture sum_(ic) rho(distance of x_i from the line of
+    sight of camera c on which the texture of vertex i is found again): it tells crossing legs apart and
+    keeps cloth from sliding. Tracks go from the parent's picture to the frame's by pyramidal Lucas-Kanade
+    from where the vertex is expected; those that do not return within `round_trip` are dropped.
+
     Vertices in metres, float32. `residual` tells surface distance only; it cannot tell a limb on the wrong
     side.
-    Raises ValueError where tree and surfaces do not belong together.
+    Raises ValueError where tree and surfaces, or footage and cameras, do not belong together.
 
     Source: 004 section 2.2.3; Sumner, Schmid and Pauly, SIGGRAPH 2007 (deformation graph); Li, Sumner and
-    Pauly, SGP 2008; Yao, Deng, Xu and Zhang, CVPR 2020 (Welsch loss).
-    Departure: deformation graphs and robust two-way closest points in place of rigid patch matching and one
-    Laplacian solve (eq 2.2); the root is moved to a frame whose limbs are clear of each other, since what
-    the root's surface joins can never come apart.
+    Pauly, SGP 2008; Yao, Deng, Xu and Zhang, CVPR 2020 (Welsch loss); Bouguet, Intel 2001 (tracking).
+    Departure: deformation graphs, robust two-way closest points and tracks in place of rigid patches, SIFT and one
+    Laplacian solve (eq 2.2); by default each take is followed in time, where texture can be tracked; the root is
+    moved to a frame whose limbs are clear of each other, since what the root's surface joins can never come apart.
     """
+    if (footage is None) != (cameras is None):
+        given, missing = ("cameras", "footage") if footage is None else ("footage", "cameras")
+        raise ValueError(f"register: footage and cameras go together, got {given} only: wire {missing} too")
     frames = _frames(surfaces, tree)
     parent, order = np.asarray(tree.parent), np.asarray(tree.order)
     if root == "spread":
         parent, order = rehang(parent, _most_spread(frames, order))
+    if route == "takes":
+        parent, order = chain_takes(tree.take, tree.frame_index, tree.parent, tree.distance, int(order[0]))
     first = frames[order[0]]
     template = make_template(first.vertices, first.faces, patches, levels)
     stages = _stages(template, reach, detail, stiffness, iterations)
-    pull = Pull(_NORMAL_LENGTH, tangential, prior)
+    pull = Pull(_NORMAL_LENGTH, tangential, prior, texture)
+    views = None
+    if footage is not None and cameras is not None and texture > 0:
+        views = FrameViews(footage, cameras)
     aligned: dict[int, np.ndarray] = {int(order[0]): template.vertices}
     figures = {int(order[0]): (0.0, 0.0)}
     lengths = edges(template.faces)
+    names = [(str(tree.takes[frame.take]), frame.instant) for frame in frames]
     # the banded solves are small: several BLAS threads would only wait for each other, and could change bits
     with threadpool_limits(limits=1, user_api="blas"):
         for k in map(int, order[1:]):
             target = fit_target(frames[k].vertices, frames[k].faces, pull.normal_length)
             start = _start(template, frames, aligned, parent, k, target, stages[0].scale, pull)
-            aligned[k] = fit(template, start, target, stages, pull)
+            tracker = None
+            if views is not None:
+                up = int(parent[k])
+                tracker = views.tracker((names[up], names[k]), aligned[up], template.faces, round_trip)
+            aligned[k] = fit(template, start, target, stages, pull, tracker)
             figures[k] = _figures(template, aligned[k], frames[k], lengths)
     return {
         name: _sequence(
@@ -192,9 +224,9 @@ def _start(
 
 
 def _figures(template: Template, moved: np.ndarray, frame: _Frame, pairs: np.ndarray) -> tuple[float, float]:
-    """Residual (m) and stretch of a fitted frame; every third vertex speaks for the others."""
-    forth = closest_points(moved[::3], frame.vertices, frame.faces)[2]
-    back = closest_points(frame.vertices[::3], moved, template.faces)[2]
+    """Residual (m) and stretch of a fitted frame; every eighth vertex speaks for the others."""
+    forth = closest_points(moved[::8], frame.vertices, frame.faces)[2]
+    back = closest_points(frame.vertices[::8], moved, template.faces)[2]
 
     def log_length(vertices: np.ndarray) -> np.ndarray:
         ends = vertices[pairs[:, 0]] - vertices[pairs[:, 1]]

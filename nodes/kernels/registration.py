@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -15,6 +16,7 @@ from reperform.nodes.kernels.deformation_graph import (
 from reperform.nodes.kernels.graph_fit import deform, fit_step, link_arms, node_motions
 from reperform.nodes.kernels.mesh_geometry import vertex_areas, vertex_normals
 from reperform.nodes.kernels.surface_pull import FitTarget, surface_pull
+from reperform.nodes.kernels.texture_tracks import Sights, add_sight_pull
 
 
 class Template(NamedTuple):
@@ -37,11 +39,20 @@ class Stage(NamedTuple):
 
 
 class Pull(NamedTuple):
-    """How surfaces draw on each other."""
+    """How surfaces draw on each other, and their texture."""
 
     normal_length: float  # m; normals count in the closest point search like this distance
     tangential: float  # share of a pull that is not along the normal
     prior: float  # weight of where a vertex was expected, against one closest point
+    texture: float = 0.0  # weight of one camera's track, against one closest point
+
+
+# The lines of sight of vertices expected at (V, 3) in the first or a later look.
+Tracker = Callable[[np.ndarray, int], Sights]
+# Texture is looked up twice: from where motion leads, and again from where the coarsest fit came to.
+_LOOKS = 2
+# Tracks are dropped at this share of the distance at which closest points are.
+_TRACK_SCALE = 0.4
 
 
 def make_template(vertices: np.ndarray, faces: np.ndarray, patches: int, levels: int) -> Template:
@@ -56,17 +67,26 @@ def make_template(vertices: np.ndarray, faces: np.ndarray, patches: int, levels:
 
 
 def register(
-    template: Template, start: np.ndarray, target: FitTarget, stages: tuple[Stage, ...], pull: Pull
+    template: Template,
+    start: np.ndarray,
+    target: FitTarget,
+    stages: tuple[Stage, ...],
+    pull: Pull,
+    tracker: Tracker | None = None,
 ) -> np.ndarray:
     """The template's vertices (V, 3) fitted to a target, from the pose `start` (V, 3).
 
     Each stage takes Gauss-Newton steps from where the last ended: two-way closest points pull, links
     between nodes resist changes of the pose against `start` and of the lengths against the template, and
-    `start` itself pulls weakly where nothing else does. In the end the template is deformed afresh by the
+    `start` itself pulls weakly where nothing else does. A `tracker` adds lines of sight on which texture was
+    found again. In the end the template is deformed afresh by the
     motions found, so that no detail wears off along a chain of frames.
     """
     moved = start
-    for stage in stages:
+    sights = None
+    for look, stage in enumerate(stages):
+        if tracker is not None and look < _LOOKS:
+            sights = tracker(moved, look)
         graph = carried(stage.graph, start)
         bent, _ = node_motions(stage.graph, template.vertices, start)
         upright = np.broadcast_to(np.eye(3), bent.shape)
@@ -74,6 +94,8 @@ def register(
         rotation, translation = node_motions(graph, start, moved)
         for _ in range(stage.iterations):
             tensor, force = _pull(template, moved, start, target, stage.scale, pull)
+            if sights is not None:
+                add_sight_pull(sights, moved, _TRACK_SCALE * stage.scale, pull.texture, tensor, force)
             rotation, translation = fit_step(
                 graph, start, rotation, translation, arms, tensor, force, stage.stiffness
             )

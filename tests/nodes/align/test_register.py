@@ -107,3 +107,8 @@ def test_refuses_a_tree_of_other_surfaces(surfaces, tree):
     fewer = surfaces["nod"]._replace(vertices=surfaces["nod"].vertices[:3], faces=surfaces["nod"].faces[:3])
     with pytest.raises(ValueError, match="4 frames of take nod, the surfaces have 3 frames"):
         register(surfaces | {"nod": fewer}, tree)
+
+
+def test_footage_without_cameras_is_refused(surfaces, tree):
+    with pytest.raises(ValueError, match="register: footage and cameras go together, got footage only"):
+        register(surfaces, tree, {})
