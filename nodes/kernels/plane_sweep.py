@@ -24,12 +24,13 @@ def sweep_cost(
 ) -> np.ndarray:
     """Disagreement (V, L) float32 in 0..1 of the cameras about each point moved inwards by each of L depths.
 
-    images (camera, y, x, 3) float32; rows: `camera_rows`; points (V, 3) m, normals (V, 3) outward unit; views (V, K)
-    int32: the cameras that look at each point, -1 for none; depths (L,) m. At x = p - depth n lies a square of
-    (2 half + 1)^2 samples `spacing` m apart, in the plane across n. With z the normalised correlation of two cameras'
-    samples, means taken per channel and `NOISE` added to each variance, and z = 0 where it is negative,
-    cost = 1 - (mean + largest of z over the pairs of cameras) / 2. It is 1 where fewer than two cameras see x whole,
-    and near 1 where there is no texture.
+    images (camera, y, x, 4) float32, 0..255: colour, matte; rows: `camera_rows`; points (V, 3) m, normals (V, 3) outward
+    unit; views (V, K) int32: the cameras that look at each point, -1 for none; depths (L,) m. At x = p - depth n lies
+    a square of (2 half + 1)^2 samples `spacing` m apart, in the plane across n. With z the normalised correlation of
+    two cameras' samples, means taken per channel and `NOISE` added to each variance, and z = 0 where it is negative,
+    cost = 1 - (mean + largest of z over the pairs of cameras) / 2. A camera in which the square leaves the picture, or
+    is covered by its matte to less than 85 %, is not asked; the cost is 1 where fewer than two remain, and near 1
+    where there is no texture.
 
     Source: Collins 1996, CVPR (plane sweep); Goesele, Curless and Seitz 2006, CVPR (correlation of several views).
     Departure: planes across the surface's own normals; half of the vote goes to the best pair, since one of the
@@ -140,7 +141,7 @@ def _sample(image: np.ndarray, row: np.ndarray, frame: np.ndarray, half: int, pa
             sum2 += blue
             i += 3
     count = np.float32(i // 3)
-    if cover < _LEAST * count:
+    if cover < 255 * _LEAST * count:
         return -1.0
     sum0, sum1, sum2 = sum0 / count, sum1 / count, sum2 / count
     power = np.float32(0)

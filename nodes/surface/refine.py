@@ -72,16 +72,15 @@ def refine(
     *,
     vertices: Annotated[int, Param("vertices", 0, 10_000_000, "kept at most; 0: as many as came in")] = 0,
     inward: Annotated[
-        float, Param("m", 0.005, 0.5, "farthest that the hull may be outside the surface")
-    ] = 0.08,
+        float, Param("m", 0.005, 0.5, "farthest that the hull may lie outside the surface")
+    ] = 0.12,
     step: Annotated[
         float, Param("m", 0.0005, 0.05, "of the first search; the second takes half of it")
-    ] = 0.006,
+    ] = 0.008,
     edge: Annotated[float, Param("m", 0.002, 1.0, "longest edge of the mesh that is searched")] = 0.035,
     stiffness: Annotated[
-        float,
-        Param("1/m", 0.0, 1000.0, "cost of neighbours moving differently, per m; agreement is worth 0..1"),
-    ] = 2.0,
+        float, Param("1/m", 0.0, 1000.0, "cost of neighbours moving differently; 10 for a poor calibration")
+    ] = 3.0,
 ) -> Surfaces:
     """The surface of the performer, moved along its normals to where the pictures agree; watertight as it came.
 
@@ -110,7 +109,7 @@ def refine(
     spacing = edge / 3.5
     for level in (
         Round(2 * step, inward, step, spacing),
-        Round(2.5 * step, 2.5 * step, 0.5 * step, 0.8 * spacing),
+        Round(2 * step, 2 * step, 0.5 * step, 0.8 * spacing),
     ):
         points, windows, normals = _outlined(points, mesh, rig, mattes.alpha, _NORMAL_ROUNDS)
         points = _searched(points, normals, windows, mesh, images, camera_rows(*rig), level, stiffness)
@@ -122,11 +121,17 @@ def refine(
 
 
 def _pictures(images: np.ndarray, alpha: np.ndarray) -> np.ndarray:
-    """Pictures free of the finest noise with their matte, (camera, y, x, 4) float32: red, green, blue, 0..1."""
-    pictures = np.empty((*alpha.shape, 4), np.float32)
+    """Pictures free of the finest noise, each with its matte: (camera, y, x, 4) float32, 0..255.
+
+    Only the part that shows something is filled in; the rest is 0, as its matte is.
+    """
+    pictures = np.zeros((*alpha.shape, 4), np.float32)
     for picture, image, matte in zip(pictures, images, alpha, strict=True):
-        picture[..., :3] = cv2.GaussianBlur(image, (0, 0), 0.6)
-        picture[..., 3] = matte / np.float32(255)
+        x, y, width, height = cv2.boundingRect(np.ascontiguousarray(matte))
+        part = slice(y, y + height), slice(x, x + width)
+        if width and height:
+            picture[part][..., :3] = cv2.GaussianBlur(np.ascontiguousarray(image[part]), (0, 0), 0.6)
+            picture[part][..., 3] = matte[part]
     return pictures
 
 
