@@ -66,13 +66,13 @@ def register(
     tangential: Annotated[
         float, Param("1", 0.0, 1.0, "share of a closest point's pull that is not along its normal")
     ] = 0.4,
-    iterations: Annotated[int, Param("steps", 1, 50, "Gauss-Newton steps per level")] = 4,
+    iterations: Annotated[int, Param("steps", 1, 50, "Gauss-Newton steps per level")] = 3,
     prior: Annotated[
         float, Param("1", 0.0, 10.0, "pull of the expected place against one closest point")
     ] = 0.03,
     texture: Annotated[
         float, Param("1", 0.0, 100.0, "pull of one camera's track against one closest point")
-    ] = 2.0,
+    ] = 4.0,
     round_trip: Annotated[float, Param("px", 0.1, 20.0, "largest error of a track followed back")] = 1.0,
     residual_gate: Annotated[float, Param("m", 0.0, 1.0, "largest residual of a trusted frame")] = 0.02,
     stretch_gate: Annotated[float, Param("1", 0.0, 10.0, "largest stretch of a trusted frame")] = 0.3,
