@@ -20,6 +20,7 @@ from reperform.nodes.kernels.mesh_window import MeshWindow, Rig, mesh_windows, v
 from reperform.nodes.kernels.outline_fit import outline_offsets
 from reperform.nodes.kernels.plane_sweep import sweep_cost
 from reperform.nodes.kernels.taubin import taubin_smooth
+from reperform.nodes.kernels.unfold import unfold
 from reperform.nodes.kernels.voxel_carving import camera_rows
 from reperform.nodes.products.cameras import Cameras
 from reperform.nodes.products.footage import Footage, Mattes
@@ -92,7 +93,8 @@ def refine(
     with C the disagreement of the cameras that see the vertex best (`sweep_cost`: normalised correlation of patches
     across the normal, blind to a camera's gain) and e_vw a share of the hull's unevenness (so that its ridges need
     not come along). Where there is no texture C is 1 for every d and the vertex stays with its neighbours, or on the
-    hull. After each round vertices whose outlines fall short of a matte move back out, and those outside one move in.
+    hull. Before each round and at the end vertices whose outlines fall short of a matte move out, and those outside one
+    move in; folds are smoothed away.
 
     Raises ValueError where pictures, mattes and calibration do not belong together.
     Source: 004 section 2.2 and Starck and Hilton 2007, IEEE CGA 27(3) (hull, then the consistent surface inside it
@@ -113,7 +115,7 @@ def refine(
     ):
         points, windows, normals = _outlined(points, mesh, rig, mattes.alpha, _NORMAL_ROUNDS)
         points = _searched(points, normals, windows, mesh, images, camera_rows(*rig), level, stiffness)
-    points = _outlined(points, mesh, rig, mattes.alpha, 1)[0]
+    points = unfold(_outlined(points, mesh, rig, mattes.alpha, 1)[0], faces, mesh.adjacency)
     budget = vertices or len(surfaces.vertices)
     if len(points) > budget:
         points, faces = decimate(points, faces, budget)
@@ -174,7 +176,8 @@ def _searched(
     depth = diffuse(depth, np.ones(len(depth)), mesh.adjacency, smooth=0.2, keep=0.0, rounds=8)
     moved = points - depth[:, None] * normals
     trust = diffuse(trust, np.ones(len(trust)), mesh.adjacency, smooth=0.5, keep=0.0, rounds=4)
-    return np.asarray(moved + trust[:, None] * (taubin_smooth(moved, mesh.faces, 2) - moved))
+    smoothed = moved + trust[:, None] * (taubin_smooth(moved, mesh.faces, 2) - moved)
+    return unfold(smoothed, mesh.faces, mesh.adjacency)
 
 
 def _bumps(points: np.ndarray, normals: np.ndarray, mesh: Mesh) -> np.ndarray:
