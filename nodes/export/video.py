@@ -31,7 +31,12 @@ def write_mp4(path: Path, images: Iterable[np.ndarray], fps: float, *, crf: int 
                 stream.height, stream.width = size
                 stream.pix_fmt = "yuv420p"
                 # One thread: the bytes do not depend on the machine.
-                stream.options = {"crf": str(crf), "preset": "medium", "threads": "1"}
+                stream.codec_context.thread_count = 1
+                stream.options = {
+                    "crf": str(crf),
+                    "preset": "medium",
+                    "x264-params": "threads=1:lookahead-threads=1:sliced-threads=0",
+                }
             elif picture.shape[:2] != size:
                 raise ValueError(
                     f"{path}: all pictures must be {size[1]} x {size[0]} px as the first, picture {count} is "

@@ -18,22 +18,24 @@ from reperform.viewer.window import Window, open_window
 
 products = make_products()
 steps = ["mesh", "matrix", "surfaces", "performance"]
-tick, count = Window._tick, 0
+tick, count, seen = Window._tick, 0, set()
 
 
 def act(window):
     global count
     count += 1
+    place = count // 6
+    if place > len(steps):
+        seen.add(window.session.frame)
     if count % 6 == 0:
-        place = count // 6
         if place < len(steps):
             window.session.select(steps[place])
             window.refresh()
             print(window.session.caption(), flush=True)
         elif place == len(steps):
             window.session.play()
-        elif place == len(steps) + 4:
-            print("moved", window.session.frame > 0, flush=True)
+        elif place > len(steps) and (len(seen) > 1 or place == len(steps) + 40):
+            print("moved", len(seen) > 1, flush=True)
             # Not from within a tick: Open3D is then walking through its windows.
             window._gui.Application.instance.post_to_main_thread(window.window, window.window.close)
     return tick(window) or True
