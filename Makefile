@@ -17,7 +17,7 @@ demo: environment ## install, then film, rebuild, align, direct and render the d
 	@echo "The film:      results/quickstart.mp4"
 	@echo "The way:       results/quickstart_path.png, results/quickstart_graph.png"
 	@echo "Look closer:   $(BIN)/reperform view quickstart render      (needs the libraries of 'make system')"
-	@echo "Direct it:     $(BIN)/reperform run quickstart --set distance=5.0 --set duration=4.6"
+	@echo "Direct it:     $(BIN)/reperform run quickstart --set distance=5.0"
 
 test: test-environment system lint ## the same set-up, then every check and test
 	$(BIN)/python -m pytest -n 2 --dist loadfile
