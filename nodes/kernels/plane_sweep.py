@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from reperform.nodes.kernels.voxel_carving import project_row
+
 # Variance (sum over the channels, grey levels squared) that is noise and not texture.
 NOISE = 30.0
 # Share of a patch that must show the performer.
@@ -111,9 +113,9 @@ def _tangents(normal: np.ndarray, spacing: float, frame: np.ndarray) -> None:
 def _sample(image: np.ndarray, row: np.ndarray, frame: np.ndarray, half: int, patch: np.ndarray) -> float:
     """Fill `patch` with the samples less their means per channel; their power with noise, -1 if out of the picture."""
     px, py, pz = frame[0]
-    x0, y0, depth = _project(row, px, py, pz)
-    ax, ay, near_a = _project(row, px + frame[1, 0], py + frame[1, 1], pz + frame[1, 2])
-    bx, by, near_b = _project(row, px + frame[2, 0], py + frame[2, 1], pz + frame[2, 2])
+    x0, y0, depth = project_row(row, px, py, pz)
+    ax, ay, near_a = project_row(row, px + frame[1, 0], py + frame[1, 1], pz + frame[1, 2])
+    bx, by, near_b = project_row(row, px + frame[2, 0], py + frame[2, 1], pz + frame[2, 2])
     if depth <= 0 or near_a <= 0 or near_b <= 0:
         return -1.0
     ax, ay, bx, by = ax - x0, ay - y0, bx - x0, by - y0
@@ -152,20 +154,3 @@ def _sample(image: np.ndarray, row: np.ndarray, frame: np.ndarray, half: int, pa
     for i in range(len(patch)):
         power += patch[i] * patch[i]
     return float(power + NOISE * count)
-
-
-@njit(cache=True, nogil=True, inline="always")
-def _project(row: np.ndarray, x: float, y: float, z: float) -> tuple[float, float, float]:
-    """Pixel of a point and its depth; depth <= 0 where the camera cannot see it. row: `camera_rows`."""
-    cz = row[6] * x + row[7] * y + row[8] * z + row[11]
-    if cz <= 1e-6:
-        return 0.0, 0.0, -1.0
-    u = (row[0] * x + row[1] * y + row[2] * z + row[9]) / cz
-    v = (row[3] * x + row[4] * y + row[5] * z + row[10]) / cz
-    square = u * u + v * v
-    if square >= row[22]:
-        return 0.0, 0.0, -1.0
-    radial = 1 + square * (row[17] + square * (row[18] + square * row[21]))
-    lens_u = u * radial + 2 * row[19] * u * v + row[20] * (square + 2 * u * u)
-    lens_v = v * radial + row[19] * (square + 2 * v * v) + 2 * row[20] * u * v
-    return row[12] * lens_u + row[14] * lens_v + row[15], row[13] * lens_v + row[16], cz

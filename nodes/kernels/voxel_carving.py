@@ -50,8 +50,8 @@ def camera_rows(
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _project(row: np.ndarray, x: float, y: float, z: float) -> tuple[float, float, float]:
-    """Pixel of a point and its depth; depth <= 0 where the camera cannot see it."""
+def project_row(row: np.ndarray, x: float, y: float, z: float) -> tuple[float, float, float]:
+    """Pixel of a point and its depth; depth <= 0 where the camera cannot see it. row: `camera_rows`."""
     cz = row[6] * x + row[7] * y + row[8] * z + row[11]
     if cz <= 1e-6:
         return 0.0, 0.0, -1.0
@@ -126,7 +126,7 @@ def _occupied(
     sure = 0
     total = 0.0
     for camera in range(len(rows)):
-        px, py, depth = _project(rows[camera], x, y, z)
+        px, py, depth = project_row(rows[camera], x, y, z)
         if depth <= 0:
             continue
         focal = 0.5 * (rows[camera, 12] + rows[camera, 13])
@@ -212,7 +212,7 @@ def may_be_occupied(
                 x, y, z = origin[0] + size * i, origin[1] + size * j, origin[2] + size * k
                 seen, empty, partly = 0, 0, 0
                 for camera in range(len(rows)):
-                    px, py, depth = _project(rows[camera], x, y, z)
+                    px, py, depth = project_row(rows[camera], x, y, z)
                     if depth <= 2 * radius:
                         # too near or behind: says nothing, and may see part of the cell
                         seen += 1
