@@ -8,7 +8,8 @@ import numpy as np
 
 from reperform.nodes.kernels.bezier import GroundCurve, curve_of, through
 
-_SWEEPS = 400
+# Bending stiffness at first, in units of the spacing, falling to a thousandth; pull back to the given curve; rounds.
+_STIFF, _TETHER, _ROUNDS, _SWEEPS = 3000.0, 1e-4, 12, 40
 
 
 class Obstacles(NamedTuple):
@@ -54,13 +55,13 @@ def _keep_nearer(best: np.ndarray, way: np.ndarray, distance: np.ndarray, out: n
 
 
 def around_obstacles(
-    curve: GroundCurve, obstacles: Obstacles, margin: float, spacing: float = 0.02, smooth: float = 0.45
+    curve: GroundCurve, obstacles: Obstacles, margin: float, spacing: float = 0.02
 ) -> GroundCurve:
     """The curve bent so that it keeps `margin` m from every obstacle, its ends where they were.
 
-    An elastic band: points about every 0.1 m are pulled to the straight line between their neighbours, back to the
-    given curve, and pushed out along the gradient of the distance where they are nearer than the margin; what comes
-    out is a chain of cubics through them. Where nothing is near, the curve stays as it is.
+    An elastic band: points about every 0.1 m are pushed out sideways where they are nearer than the margin, and what
+    they were pushed is smoothed by its bending, in turn; what comes out is a chain of cubics through them. Where
+    nothing is near, the curve stays as it is.
 
     Raises ValueError where an end is nearer than the margin, or no way is found.
 
@@ -78,7 +79,7 @@ def around_obstacles(
         )
     if not (clearance(obstacles, curve.point)[0] < margin).any():
         return curve
-    band = _settle(rest, obstacles, margin + 0.02, smooth)
+    band = _settle(rest, obstacles, margin + 0.02)
     bent = curve_of(through(band), spacing)
     least = float(clearance(obstacles, bent.point)[0].min())
     if least < margin - 0.02:
@@ -88,12 +89,27 @@ def around_obstacles(
     return bent
 
 
-def _settle(rest: np.ndarray, obstacles: Obstacles, margin: float, smooth: float) -> np.ndarray:
-    band = rest.copy()
-    for _ in range(_SWEEPS):
-        inner = band[1:-1]
-        inner += smooth * (0.5 * (band[:-2] + band[2:]) - inner)
-        inner += 0.04 * (rest[1:-1] - inner)
-        distance, way = clearance(obstacles, inner)
-        inner += np.clip(margin - distance, 0, None)[:, None] * way
-    return band
+def _settle(rest: np.ndarray, obstacles: Obstacles, margin: float) -> np.ndarray:
+    """Points (N, 2) pushed out in turn with smoothing of how far they were pushed, less and less of it."""
+    count = len(rest)
+    bend = np.diff(np.eye(count), 2, axis=0)
+    stiff = bend.T @ bend
+    shift = np.zeros_like(rest)
+    for stiffness in np.geomspace(_STIFF, _STIFF / 1000, _ROUNDS):
+        smooth = np.linalg.inv(stiffness * stiff[1:-1, 1:-1] + (1 + _TETHER) * np.eye(count - 2))
+        for _ in range(_SWEEPS):
+            shift[1:-1] = smooth @ shift[1:-1]
+            shift[1:-1] += _push(rest + shift, obstacles, margin)
+    return rest + shift
+
+
+def _push(band: np.ndarray, obstacles: Obstacles, margin: float) -> np.ndarray:
+    """How inner points that are too near must move. Sideways only: along the path, points would part and leave
+    the obstacle between them."""
+    distance, way = clearance(obstacles, band[1:-1])
+    along = band[2:] - band[:-2]
+    across = np.column_stack([along[:, 1], -along[:, 0]])
+    across /= np.maximum(np.linalg.norm(across, axis=1), 1e-9)[:, None]
+    part = (way * across).sum(axis=1)
+    part = np.where(part < 0, -1.0, 1.0) / np.maximum(np.abs(part), 0.7)
+    return (np.clip(margin - distance, 0, None) * part)[:, None] * across

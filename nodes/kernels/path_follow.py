@@ -34,37 +34,36 @@ def follow(
 ) -> int:
     """Speed and turning rate that bring a character back to a curve; the sample that it has come to.
 
-    point, tangent: the curve's samples (N, 2), `spacing` m apart.  state: x, z, heading (rad, 0 along +z, to the left
+    point, tangent: the curve's samples (N, 2), N > 1, `spacing` m apart.  state: x, z, heading (rad, 0 along +z, to the left
     positive), speed now (m/s).  at: the sample of the last call.  look_ahead: s.  limits: least and greatest speed
     (m/s), greatest turning rate (rad/s), greatest acceleration across (m/s^2).  out: speed (m/s), turning rate
     (rad/s), arc length left (m).
 
-    With L = max(0.25 m, speed look_ahead) and a the angle to the point L further on the curve, the circle through it
-    that leaves along the heading has curvature k = 2 sin(a) / L: turning = k speed, cut to its limit. The speed falls
-    where the curve ahead bends, so that speed^2 k keeps to the acceleration, and speed k to the turning rate.
+    The curvature to go is that of the curve a little ahead, and what brings an offset e (to the left) and a wrong
+    heading a back, critically damped over the length L = max(0.35 m, speed look_ahead):
 
-    Source: Coulter 1992, CMU-RI-TR-92-01 ("pure pursuit").
+        k = k_curve + 2 a / L - e / L^2,   turning = k speed
+
+    The speed falls where the curve ahead bends, so that speed^2 k keeps to the acceleration, and speed k to 0.9 of the
+    turning rate.
+
+    Source: Coulter 1992, CMU-RI-TR-92-01 ("pure pursuit", its linearisation). Departure: the curve's own curvature is
+    fed forward, so that corners are not cut.
     """
     x, z, heading, speed = state[0], state[1], state[2], state[3]
     last = len(point) - 1
     here = nearest_ahead(point, x, z, at, int(1.5 / spacing) + 1)
-    ahead = max(0.25, speed * look_ahead)
-    target = min(here + max(1, round(ahead / spacing)), last)
-    dx, dz = point[target, 0] - x, point[target, 1] - z
-    extra = ahead - (target - here) * spacing
-    dx += extra * tangent[last, 0]
-    dz += extra * tangent[last, 1]
-    distance = max(math.hypot(dx, dz), 0.05)
-    angle = math.atan2(dx, dz) - heading
+    ahead = max(0.35, speed * look_ahead)
+    aim = min(here + max(1, round(0.3 * ahead / spacing)), last - 1)
+    bend = _curvature(tangent, min(here, last - 1), aim + 1, spacing)
+    offset = tangent[here, 1] * (x - point[here, 0]) - tangent[here, 0] * (z - point[here, 1])
+    angle = math.atan2(tangent[here, 0], tangent[here, 1]) - heading
     angle = math.atan2(math.sin(angle), math.cos(angle))
-    if abs(angle) > 0.5 * math.pi:
-        bend = math.copysign(2.0 / distance, angle)
-    else:
-        bend = 2.0 * math.sin(angle) / distance
+    bend += 2.0 * angle / ahead - min(max(offset / ahead, -1.5), 1.5) / ahead
     wanted = limits[1]
     far = min(here + max(1, round(2.0 * ahead / spacing)), last)
     for k in range(here, far):
-        turn = abs(tangent[k, 1] * tangent[k + 1, 0] - tangent[k, 0] * tangent[k + 1, 1]) / spacing
+        turn = abs(_curvature(tangent, k, k + 1, spacing))
         if turn > 1e-6:
             wanted = min(wanted, math.sqrt(limits[3] / turn), 0.9 * limits[2] / turn)
     wanted = max(wanted, limits[0])
@@ -72,6 +71,14 @@ def follow(
     out[1] = min(max(bend * max(speed, limits[0]), -limits[2]), limits[2])
     out[2] = (last - here) * spacing
     return here
+
+
+@njit(cache=True, nogil=True)
+def _curvature(tangent: np.ndarray, first: int, last: int, spacing: float) -> float:
+    """Mean curvature between two samples, to the left positive, 1/m."""
+    sine = tangent[first, 1] * tangent[last, 0] - tangent[first, 0] * tangent[last, 1]
+    cosine = tangent[first, 0] * tangent[last, 0] + tangent[first, 1] * tangent[last, 1]
+    return math.atan2(sine, cosine) / (max(last - first, 1) * spacing)
 
 
 class Follower:
