@@ -172,7 +172,7 @@ def _decompose(
             frame[k, 2] /= max(norm, 1e-30)
         _product(frame, inverse_frame[f], gradient)
         _closest_rotation(gradient, r, scratch)
-        _to_quaternion(r, rotation[f])
+        to_quaternion(r, rotation[f])
         _to_matrix(rotation[f], r)
         for i in range(3):
             for j in range(3):
@@ -223,7 +223,8 @@ def _closest_rotation(matrix: np.ndarray, r: np.ndarray, c: np.ndarray) -> None:
 
 
 @njit(cache=True, nogil=True)
-def _to_quaternion(r: np.ndarray, q: np.ndarray) -> None:
+def to_quaternion(r: np.ndarray, q: np.ndarray) -> None:
+    """Write the unit quaternion (w, x, y, z) of the rotation matrix r into q, up to its sign."""
     trace = r[0, 0] + r[1, 1] + r[2, 2]
     if trace > 0.0:
         q[0] = 1.0 + trace
