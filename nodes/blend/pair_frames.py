@@ -41,16 +41,24 @@ def corresponding_frames(
     if place:
         step = max(1, vertices.shape[1] // _SAMPLE)
         samples = [
-            np.stack([_pose(sequence.vertices[:, ::step], t) for t in along]).reshape(-1, 3)
+            np.stack([pose_at(sequence.vertices[:, ::step], t) for t in along]).reshape(-1, 3)
             for sequence, along in zip((first, second), times, strict=True)
         ]
         placement, _ = align(*samples)
         vertices = apply(vertices, placement)
     for t, u in zip(*times, strict=True):
-        yield _pose(first.vertices, t), _pose(vertices, u)
+        yield pose_at(first.vertices, t), pose_at(vertices, u)
 
 
-def _pose(vertices: np.ndarray, time: float) -> np.ndarray:
+def lay_on(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """The second take's poses (T, V, 3) moved over the ground to lie on the first's, pose by pose."""
+    step = max(1, first.shape[1] // _SAMPLE)
+    placement, _ = align(first[:, ::step].reshape(-1, 3), second[:, ::step].reshape(-1, 3))
+    return apply(second, placement)
+
+
+def pose_at(vertices: np.ndarray, time: float) -> np.ndarray:
+    """The pose at a time in frames: between two frames by linear interpolation."""
     before = int(np.floor(time + 1e-9))
     part = time - before
     if part < 1e-9:

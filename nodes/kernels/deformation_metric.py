@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from reperform.nodes.kernels.mesh_blend import to_quaternion
+from reperform.nodes.kernels.quaternion import from_matrix
 
 # asin(z) = z p(z^2) on the range that half chords of unit quaternions up to sign have, z^2 <= 1/2
 _ASIN = tuple(
@@ -202,7 +202,7 @@ def _prepare(points: np.ndarray, triangles: np.ndarray, inverse: np.ndarray) -> 
                 r[k, 0] = (b[k, 0] * u22 - b[k, 1] * u12) / det
                 r[k, 1] = (b[k, 1] * u11 - b[k, 0] * u12) / det
             _orthonormal(r)
-            to_quaternion(r, q)
+            from_matrix(r, q)
             for k in range(4):
                 out[t, k, f] = q[k]
             out[t, 4, f], out[t, 5, f], out[t, 6, f] = u11, u12, u22

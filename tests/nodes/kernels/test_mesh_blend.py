@@ -4,7 +4,7 @@ import trimesh
 
 from reperform.nodes.kernels.mesh_blend import MeshBlender, blend_linear
 from reperform.nodes.kernels.mesh_geometry import volume
-from reperform.nodes.kernels.rotation import exp
+from reperform.nodes.kernels.rotation import exp, log
 
 
 @pytest.fixture
@@ -76,7 +76,7 @@ def test_a_twist_beyond_half_a_turn_stays_whole(bar: tuple[np.ndarray, np.ndarra
 
     blender = MeshBlender.build(vertices, faces)
     pair = blender.pair(twisted(0.0), twisted(4.4))
-    assert np.linalg.norm(pair.turn, axis=1).max() > 4.2
+    assert np.linalg.norm(pair.turns[1], axis=1).max() > 4.2
     error = np.linalg.norm(blender.at(pair, 0.5) - twisted(2.2), axis=1)
     # the other branch would be off by the width of the bar
     assert error.max() < 0.035
@@ -116,6 +116,65 @@ def test_a_pair_near_another_keeps_its_branch(bar: tuple[np.ndarray, np.ndarray]
     before = blender.pair(vertices, vertices @ exp(axis * 3.0).T)
     other = vertices @ exp(axis * 3.3).T
     alone, following = blender.pair(vertices, other), blender.pair(vertices, other, before)
-    assert np.linalg.norm(alone.turn - before.turn, axis=1).min() > 5.0
-    np.testing.assert_allclose(np.linalg.norm(following.turn - before.turn, axis=1), 0.3, atol=1e-6)
+    assert np.linalg.norm(alone.turns[1] - before.turns[1], axis=1).min() > 5.0
+    np.testing.assert_allclose(np.linalg.norm(following.turns[1] - before.turns[1], axis=1), 0.3, atol=1e-6)
     np.testing.assert_allclose(blender.at(following, 1.0), other, atol=1e-6)
+
+
+def _karcher(rotations: list[np.ndarray], weights: np.ndarray) -> np.ndarray:
+    mean = rotations[0]
+    for _ in range(60):
+        step = sum(w * log((mean.T @ r)[None])[0] for w, r in zip(weights, rotations, strict=True))
+        mean = mean @ exp(step)
+    return mean
+
+
+def test_several_rigid_turns_blend_to_their_mean(bar: tuple[np.ndarray, np.ndarray]) -> None:
+    vertices, faces = bar
+    centre, random = vertices.mean(0), np.random.default_rng(2)
+    rotations = [exp(v) for v in random.normal(size=(4, 3)) * 0.7]
+    poses = [(vertices - centre) @ r.T + centre for r in rotations]
+    blender = MeshBlender.build(vertices, faces)
+    weights = np.array([0.1, 0.4, 0.2, 0.3])
+    truth = (vertices - centre) @ _karcher(rotations, weights).T + centre
+    np.testing.assert_allclose(blender.blend(blender.poses(poses), weights), truth, atol=1e-5)
+
+
+def test_the_order_of_several_poses_has_no_say(bar: tuple[np.ndarray, np.ndarray]) -> None:
+    vertices, faces = bar
+    poses = [_bent(vertices, 0.2), _bent(vertices, 2.0) + [0.0, 1.0, 0.0], _bent(vertices[:, [0, 2, 1]], 1.1)]
+    weights = np.array([0.2, 0.5, 0.3])
+    blender = MeshBlender.build(vertices, faces)
+    blended = blender.blend(blender.poses(poses), weights)
+    for order in ([1, 2, 0], [2, 1, 0], [0, 2, 1]):
+        other = blender.blend(blender.poses([poses[k] for k in order]), weights[order])
+        np.testing.assert_allclose(other, blended, atol=1e-9)
+    # a pose of weight 0 is not there
+    pair = blender.at(blender.pair(poses[0], poses[2]), 0.6)
+    without = blender.blend(blender.poses(poses), np.array([0.4, 0.0, 0.6]))
+    np.testing.assert_allclose(without, pair, atol=1e-6)
+    for k in range(3):
+        np.testing.assert_allclose(blender.blend(blender.poses(poses), np.eye(3)[k]), poses[k], atol=1e-6)
+
+
+def test_several_twists_past_half_a_turn_stay_whole(bar: tuple[np.ndarray, np.ndarray]) -> None:
+    vertices, faces = bar
+
+    def twisted(turn: float) -> np.ndarray:
+        x, y, z = (vertices - [0.2, 0.9, -1.0]).T
+        angle = turn * np.clip((x - 0.15) / 0.7, 0.0, 1.0)
+        return np.stack([x, np.cos(angle) * y - np.sin(angle) * z, np.sin(angle) * y + np.cos(angle) * z], 1)
+
+    blender = MeshBlender.build(vertices, faces)
+    poses = blender.poses([twisted(0.0), twisted(4.4), twisted(1.0)])
+    blended = blender.blend(poses, np.array([0.3, 0.5, 0.2]))
+    assert np.linalg.norm(blended - twisted(2.4), axis=1).max() < 0.035
+
+
+def test_meshes_of_other_topology_are_refused(bar: tuple[np.ndarray, np.ndarray]) -> None:
+    vertices, faces = bar
+    blender = MeshBlender.build(vertices, faces)
+    with pytest.raises(ValueError, match="vertices, got"):
+        blender.pair(vertices, vertices[:-1])
+    with pytest.raises(ValueError, match="near must hold 3 poses"):
+        blender.poses([vertices] * 3, blender.pair(vertices, vertices))

@@ -1,0 +1,175 @@
+"""Blended meshes from linear blending and sparse corrections, evaluated without allocation."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+
+class HybridFields(NamedTuple):
+    """N inputs of T poses, and corrections at K bisected weights. Plain arrays: usable in compiled code.
+
+    The weights' simplex is halved again and again: simplex s has the correction `split[s]` at the middle of one
+    edge and the two halves child[s], child[s] + 1; split is -1 where it is whole. Correction k of pose t is worth
+    step[k, t] code, on the runs start[k T + t] .. start[k T + t + 1] of vertices; elsewhere it is nothing.
+    """
+
+    # (N, T, 3 V) float32, m
+    inputs: np.ndarray
+    split: np.ndarray
+    child: np.ndarray
+    start: np.ndarray
+    # per run: its first vertex, and where its codes start, three per vertex; one entry more at the end
+    first: np.ndarray
+    begin: np.ndarray
+    # int8 or int16
+    code: np.ndarray
+    step: np.ndarray
+
+
+def new_scratch(fields: HybridFields) -> np.ndarray:
+    """What one caller at a time needs to evaluate."""
+    return np.empty(len(fields.inputs))
+
+
+@njit(cache=True, nogil=True)
+def evaluate(
+    fields: HybridFields, pose: int, weights: np.ndarray, out: np.ndarray, scratch: np.ndarray
+) -> None:
+    """Write the blend of one pose at weights (N,), not negative and of sum 1, into out (V, 3) float32, m.
+
+        x(w) = sum_i w_i x_i + sum_k h_k(w) d_k
+
+    where h_k is 1 at the bisected weights of correction k, 0 at those of all earlier ones, and linear on every
+    simplex between. An input (a weight of 1) comes back to the bit. Not more than depth corrections are met.
+
+    Source: Casas, Tejera, Guillemaut and Hilton 2013, IEEE TVCG (001 eq 3; 004 eq 3.8). Departure: corrections
+    are hierarchical (Yserentant 1986, Numerische Mathematik): each is what the coarser ones leave, which is
+    small, so that few vertices need it.
+    """
+    flat = out.reshape(-1)
+    _linear(fields.inputs, pose, weights, 1.0, False, flat)
+    _correct(fields, pose, weights, 1.0, flat, scratch)
+
+
+@njit(cache=True, nogil=True)
+def evaluate_between(
+    fields: HybridFields, time: float, weights: np.ndarray, out: np.ndarray, scratch: np.ndarray
+) -> None:
+    """As `evaluate`, at a time between two poses (in poses, kept within the take): linear from one to the next."""
+    last = fields.inputs.shape[1] - 1
+    time = min(max(time, 0.0), float(last))
+    before = min(int(time), max(last - 1, 0))
+    part = time - before
+    flat = out.reshape(-1)
+    if part == 0.0 or part == 1.0:
+        pose = before + int(part)
+        _linear(fields.inputs, pose, weights, 1.0, False, flat)
+        _correct(fields, pose, weights, 1.0, flat, scratch)
+        return
+    _linear(fields.inputs, before, weights, 1.0 - part, False, flat)
+    _linear(fields.inputs, before + 1, weights, part, True, flat)
+    _correct(fields, before, weights, 1.0 - part, flat, scratch)
+    _correct(fields, before + 1, weights, part, flat, scratch)
+
+
+@njit(cache=True, nogil=True)
+def linear_into(fields: HybridFields, pose: int, weights: np.ndarray, out: np.ndarray) -> None:
+    """Write the weighted mean of the inputs of one pose into out (V, 3) float32, m."""
+    _linear(fields.inputs, pose, weights, 1.0, False, out.reshape(-1))
+
+
+@njit(cache=True, nogil=True)
+def hat_values(
+    fields: HybridFields, weights: np.ndarray, node: np.ndarray, value: np.ndarray, scratch: np.ndarray
+) -> int:
+    """Which corrections count at weights (N,), and how much; returns how many."""
+    scratch[:] = weights
+    n = len(scratch) - 1
+    simplex, depth, found = 0, 0, 0
+    while fields.split[simplex] >= 0:
+        k = n - depth % n
+        low = min(scratch[0], scratch[k])
+        if low > 0.0:
+            node[found], value[found] = fields.split[simplex], 2.0 * low
+            found += 1
+        simplex = fields.child[simplex] + _halve(scratch, k)
+        depth += 1
+    return found
+
+
+@njit(cache=True, nogil=True)
+def _halve(inside: np.ndarray, k: int) -> int:
+    """Barycentric coordinates in the half of the simplex (edge 0 - k cut) that they lie in; which half it is."""
+    if inside[0] >= inside[k]:
+        inside[0] -= inside[k]
+        inside[k] *= 2.0
+        return 0
+    rest, middle = inside[k] - inside[0], 2.0 * inside[0]
+    for j in range(k - 1):
+        inside[j] = inside[j + 1]
+    inside[k - 1], inside[k] = rest, middle
+    return 1
+
+
+@njit(cache=True, nogil=True)
+def _linear(
+    inputs: np.ndarray, pose: int, weights: np.ndarray, share: float, add: bool, flat: np.ndarray
+) -> None:
+    """flat (+)= share * sum_i w_i inputs[i, pose], two inputs at a time; those of weight 0 are not read."""
+    count = len(weights)
+    i, fresh = 0, not add
+    while i < count:
+        while i < count and weights[i] == 0.0:
+            i += 1
+        j = i + 1
+        while j < count and weights[j] == 0.0:
+            j += 1
+        if i >= count:
+            break
+        one = np.float32(share * weights[i])
+        x = inputs[i, pose]
+        if j >= count:
+            if fresh:
+                for v in range(len(flat)):
+                    flat[v] = one * x[v]
+            else:
+                for v in range(len(flat)):
+                    flat[v] += one * x[v]
+        else:
+            two = np.float32(share * weights[j])
+            y = inputs[j, pose]
+            if fresh:
+                for v in range(len(flat)):
+                    flat[v] = one * x[v] + two * y[v]
+            else:
+                for v in range(len(flat)):
+                    flat[v] += one * x[v] + two * y[v]
+        fresh = False
+        i = j + 1
+
+
+@njit(cache=True, nogil=True)
+def _correct(
+    fields: HybridFields, pose: int, weights: np.ndarray, share: float, flat: np.ndarray, scratch: np.ndarray
+) -> None:
+    """flat += share * sum_k h_k(w) d_k of one pose."""
+    scratch[:] = weights
+    n = len(scratch) - 1
+    poses = fields.inputs.shape[1]
+    simplex, depth = 0, 0
+    while fields.split[simplex] >= 0:
+        k = n - depth % n
+        low = min(scratch[0], scratch[k])
+        if low > 0.0:
+            node = fields.split[simplex]
+            scale = np.float32(2.0 * low * share * fields.step[node, pose])
+            for run in range(fields.start[node * poses + pose], fields.start[node * poses + pose + 1]):
+                code = fields.code[fields.begin[run] : fields.begin[run + 1]]
+                part = flat[3 * fields.first[run] : 3 * fields.first[run] + len(code)]
+                for v in range(len(code)):
+                    part[v] += scale * np.float32(code[v])
+        simplex = fields.child[simplex] + _halve(scratch, k)
+        depth += 1
