@@ -29,8 +29,8 @@ def find_transitions(
         W_L(m, n) = sum_k (L - |k|) c(m + k, n + k) / L^2,   |k| <= L,  all of the window inside both
         sequences
 
-    Local minima are those of W at the shortest L among its eight neighbours; then the best L is taken for
-    each.
+    Local minima are those of W at the shortest L among its eight neighbours (those at least `apart`); then
+    the best L is taken for each.
 
     Source: Huang, Tejera, Collomosse and Hilton 2015, ACM TOG (000 eqs 2-5).
     Departure: the sum is divided by the sum of its weights, else the shortest window always wins.
@@ -84,6 +84,9 @@ def _local_minima(cost: np.ndarray, half: int, apart: int) -> tuple[np.ndarray, 
                 for dc in range(-1, 2):
                     i, j = r + dr, c + dc
                     if (dr == 0 and dc == 0) or i < 0 or j < 0 or i >= rows or j >= columns:
+                        continue
+                    # cells that may not be chosen do not hide those beside them
+                    if abs(i - j) < apart:
                         continue
                     # of equal neighbours the first one in row order counts
                     if cost[i, j] < cost[r, c] or (cost[i, j] == cost[r, c] and (i, j) < (r, c)):

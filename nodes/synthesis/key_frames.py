@@ -8,12 +8,14 @@ from typing import Annotated
 import numpy as np
 
 from reperform.nodes.declaration import Param, node
-from reperform.nodes.kernels.key_frame_search import KeyFrameSearch, Spot, Targets, Walk
 from reperform.nodes.kernels.path_frames import path_frames
+from reperform.nodes.kernels.prepared_search import PreparedSearch
+from reperform.nodes.kernels.walk_moves import Moves, Targets, Walk
 from reperform.nodes.product import Dataset
 from reperform.nodes.products.mesh import MeshSequence
 from reperform.nodes.products.motion import MotionGraph, MotionPath
 from reperform.nodes.synthesis.graph_walk import ground_tracks, motion_path, passages_of
+from reperform.nodes.synthesis.key_frame_targets import asked_targets, moves_between
 
 _WHO = "synthesis.key_frames"
 # How far beyond the targets the nearest feasible one is looked for: factors of the horizon.
@@ -49,8 +51,7 @@ def key_frames(
 
     Key frames are captured frames, shown unblended. The minimum is over all walks through the graph, loops
     included, by dynamic programming over (place, steps, distance). `bound` is proved to be under the cost of
-    every
-    walk within the tolerances: cost - bound is at most what the grid of distances rounds off.
+    every walk within the tolerances; it equals the cost where all walks that rounding leaves open were tried.
 
     Raises ValueError where a key frame does not exist, the key frames cannot be joined, or no walk is within
     the tolerances; it then names the nearest distance and duration that can be met. With `nearest` that walk
@@ -61,35 +62,26 @@ def key_frames(
     subtracted once per loop and loops need not connect; the dynamic program covers every connected walk, with
     tolerances as hard limits. Weights as in 000: 0.3 m costs as much as 10 frames at 25 Hz.
     """
-    if distance_tolerance <= 0 or duration_tolerance <= 0:
-        raise ValueError(
-            f"{_WHO}: tolerances must be above 0, got {distance_tolerance} m, {duration_tolerance} s"
-        )
-    rate = float(graph.fps)
-    keys = [_spot(text, graph) for text in (start, *via, end)]
-    passages, tracks = passages_of(graph), ground_tracks(graph, meshes, _WHO)
-    search = KeyFrameSearch.build(passages, np.asarray(graph.cost), tracks, keys)
-    if not search.reachable:
-        raise ValueError(
-            f"{_WHO}: no walk through the graph shows {', '.join((start, *via, end))} in this order: "
-            f"allow more transitions, a higher threshold, or other key frames"
-        )
-    asked = Targets(
-        np.nan if distance is None else distance,
-        np.nan if duration is None else duration * rate - 1.0,
-        distance_weight,
-        duration_weight / rate,
-        distance_tolerance,
-        duration_tolerance * rate,
+    rate, keys = float(graph.fps), (start, *via, end)
+    asked = asked_targets(
+        distance,
+        duration,
+        (distance_weight, duration_weight),
+        (distance_tolerance, duration_tolerance),
+        rate,
+        _WHO,
     )
+    moves, spots = moves_between(graph, meshes, keys, _WHO)
     horizon = int(np.ceil((longest if duration is None else duration + duration_tolerance) * rate))
     reach = np.inf if distance is None else distance + distance_tolerance
-    walk = search.best(asked, horizon, reach)
+    answer = PreparedSearch.fill(moves, horizon, reach, distance_weight).ask(asked)
+    walk = answer.walk
     if walk is None:
-        walk = _nearest(search, asked, horizon, reach, rate)
+        walk = _nearest(moves, asked, horizon, reach, rate)
         if walk is None or not nearest:
-            raise ValueError(_infeasible((start, *via, end), distance, duration, walk, rate))
-    frames = path_frames(keys[0].take, keys[0].frame, [passages[k] for k in walk.passages], keys[-1].frame)
+            raise ValueError(_infeasible(keys, distance, duration, walk, rate, answer.proved))
+    passages, tracks = passages_of(graph), ground_tracks(graph, meshes, _WHO)
+    frames = path_frames(spots[0].take, spots[0].frame, [passages[k] for k in walk.passages], spots[-1].frame)
     return motion_path(
         graph, frames, tracks, walk.passages,
         distance=asked.distance, duration=np.nan if duration is None else duration,
@@ -97,31 +89,13 @@ def key_frames(
     )  # fmt: skip
 
 
-def _spot(text: str, graph: MotionGraph) -> Spot:
-    """A captured frame from TAKE:FRAME; frames count from 0, negative ones from the end."""
-    takes = [str(take) for take in np.asarray(graph.takes)]
-    take, _, frame = text.rpartition(":")
-    if take not in takes:
-        raise ValueError(f"{_WHO}: key frame {text!r} must read TAKE:FRAME with a take of {', '.join(takes)}")
-    count = int(np.asarray(graph.frames)[takes.index(take)])
-    try:
-        number = int(frame)
-    except ValueError:
-        raise ValueError(
-            f"{_WHO}: key frame {text!r} must read TAKE:FRAME with a whole frame number"
-        ) from None
-    if not -count <= number < count:
-        raise ValueError(f"{_WHO}: key frame {text!r}: take {take} has frames 0 .. {count - 1}")
-    return Spot(takes.index(take), number % count)
-
-
-def _nearest(search: KeyFrameSearch, asked: Targets, horizon: int, reach: float, rate: float) -> Walk | None:
+def _nearest(moves: Moves, asked: Targets, horizon: int, reach: float, rate: float) -> Walk | None:
     """The nearest walk, looked for ever wider until nothing outside the table can be nearer."""
     walk = None
     for factor in _WIDER:
         steps = factor * horizon + int(4 * rate)
         far = factor * reach + 2.0
-        walk = search.nearest(asked, steps, far)
+        walk = PreparedSearch.fill(moves, steps, far, asked.distance_weight).nearest(asked)
         if walk is not None:
             error = max(
                 np.nan_to_num(abs(walk.distance - asked.distance)) / asked.distance_tolerance,
@@ -137,12 +111,18 @@ def _nearest(search: KeyFrameSearch, asked: Targets, horizon: int, reach: float,
 
 
 def _infeasible(
-    keys: Sequence[str], distance: float | None, duration: float | None, walk: Walk | None, rate: float
+    keys: Sequence[str],
+    distance: float | None,
+    duration: float | None,
+    walk: Walk | None,
+    rate: float,
+    proved: bool,
 ) -> str:
     asked = " in ".join(
         f"{value:g} {unit}" for value, unit in ((distance, "m"), (duration, "s")) if value is not None
     )
-    text = f"{_WHO}: no walk through {', '.join(keys)} covers {asked or 'anything'} within the tolerances"
+    none = "no walk" if proved else "no walk was found that"
+    text = f"{_WHO}: {none} through {', '.join(keys)} covers {asked or 'anything'} within the tolerances"
     if walk is None:
         return f"{text}, nor any near it: ask for a longer duration"
     return (

@@ -1,0 +1,72 @@
+"""What key-framed synthesis is asked, read: key frames by name, targets in steps."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from reperform.nodes.kernels.walk_moves import Moves, Spot, Targets, lay_out
+from reperform.nodes.product import Dataset
+from reperform.nodes.products.mesh import MeshSequence
+from reperform.nodes.products.motion import MotionGraph
+from reperform.nodes.synthesis.graph_walk import ground_tracks, passages_of
+
+
+def moves_between(
+    graph: MotionGraph, meshes: Dataset[MeshSequence], keys: Sequence[str], who: str
+) -> tuple[Moves, list[Spot]]:
+    """The moves of a graph between key frames, given as TAKE:FRAME in order.
+
+    Raises ValueError where a key frame does not exist or no walk joins them.
+    """
+    spots = [key_spot(text, graph, who) for text in keys]
+    moves = lay_out(passages_of(graph), np.asarray(graph.cost), ground_tracks(graph, meshes, who), spots)
+    if not moves.reachable:
+        raise ValueError(
+            f"{who}: no walk through the graph shows {', '.join(keys)} in this order: "
+            f"allow more transitions, a higher threshold, or other key frames"
+        )
+    return moves, spots
+
+
+def key_spot(text: str, graph: MotionGraph, who: str) -> Spot:
+    """A captured frame from TAKE:FRAME; frames count from 0, negative ones from the end."""
+    takes = [str(take) for take in np.asarray(graph.takes)]
+    take, _, frame = text.rpartition(":")
+    if take not in takes:
+        raise ValueError(f"{who}: key frame {text!r} must read TAKE:FRAME with a take of {', '.join(takes)}")
+    count = int(np.asarray(graph.frames)[takes.index(take)])
+    try:
+        number = int(frame)
+    except ValueError:
+        raise ValueError(
+            f"{who}: key frame {text!r} must read TAKE:FRAME with a whole frame number"
+        ) from None
+    if not -count <= number < count:
+        raise ValueError(f"{who}: key frame {text!r}: take {take} has frames 0 .. {count - 1}")
+    return Spot(takes.index(take), number % count)
+
+
+def asked_targets(
+    distance: float | None,
+    duration: float | None,
+    weights: tuple[float, float],
+    tolerances: tuple[float, float],
+    rate: float,
+    who: str,
+) -> Targets:
+    """Targets in metres and steps (frames - 1), from metres and seconds; weights and tolerances per both.
+
+    Raises ValueError where a tolerance is not positive.
+    """
+    if min(tolerances) <= 0:
+        raise ValueError(f"{who}: tolerances must be above 0, got {tolerances[0]} m, {tolerances[1]} s")
+    return Targets(
+        np.nan if distance is None else distance,
+        np.nan if duration is None else duration * rate - 1.0,
+        weights[0],
+        weights[1] / rate,
+        tolerances[0],
+        tolerances[1] * rate,
+    )
