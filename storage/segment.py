@@ -8,11 +8,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
-import zarr
-from zarr.codecs import BloscCodec
 
 CHUNK_BYTES = 1 << 20
 
@@ -20,8 +19,9 @@ CHUNK_BYTES = 1 << 20
 def write_segment(
     store: Any, path: str, fields: Mapping[str, np.ndarray | Sequence[np.ndarray]], by_item: bool = False
 ) -> int:
-    """Write fields (an array is whole, a sequence of arrays is rows) as the zarr group at `path` of a zarr store.
+    """Write fields (an array is whole, a sequence of arrays is rows) as the zarr group at `path` of a store.
 
+    store: a local folder, or a zarr store.
     by_item: row k of every field belongs to item k (else the segment is one product, whose rows are its frames).
     Returns the number of bytes before compression. A reader sees nothing of it until the index names it.
     """
@@ -34,9 +34,16 @@ def write_segment(
         else:
             arrays[name] = _stack([np.asarray(row) for row in value], entry)
         layout[name] = entry
-    group = zarr.create_group(store, path=path, attributes={"fields": layout, "by_item": by_item})
-    for name, (data, rows) in arrays.items():
-        _write_array(group, name, data, rows)
+    chunked = {name: (data, _chunks(data, rows)) for name, (data, rows) in arrays.items()}
+    attributes = {"fields": layout, "by_item": by_item}
+    if isinstance(store, Path):
+        from reperform.storage.chunk_folder import write_group
+
+        write_group(store / path, attributes, chunked)
+    else:
+        from reperform.storage.zarr_group import write_zarr_group
+
+        write_zarr_group(store, path, attributes, chunked)
     return sum(data.nbytes for data, _ in arrays.values())
 
 
@@ -57,36 +64,23 @@ def _stack(rows: list[np.ndarray], entry: dict[str, Any]) -> tuple[np.ndarray, i
     return np.concatenate([row.ravel() for row in encoded]) if encoded else np.zeros(0, np.float32), None
 
 
-def _write_array(group: zarr.Group, name: str, data: np.ndarray, rows: int | None) -> None:
-    if rows:
-        step = max(1, min(rows, CHUNK_BYTES // max(1, data.nbytes // rows)))
-        chunks = (step, *(max(1, n) for n in data.shape[1:]))
-    elif data.ndim and data.nbytes > CHUNK_BYTES:
-        step = max(1, CHUNK_BYTES * data.shape[0] // data.nbytes)
-        chunks = (step, *(max(1, n) for n in data.shape[1:]))
-    else:
-        chunks = tuple(max(1, n) for n in data.shape)
-    array = group.create_array(
-        name,
-        shape=data.shape,
-        dtype=data.dtype,
-        chunks=chunks,
-        compressors=[BloscCodec(cname="lz4", clevel=3, shuffle="shuffle")],
-        # one flat folder of chunks per array: a deep tree costs a mkdir per chunk
-        chunk_key_encoding={"name": "default", "separator": "."},
-        # zeros are data too: a chunk that is missing is damage, never a fill value
-        config={"write_empty_chunks": True},
-    )
-    if data.size:
-        array[...] = data
+def _chunks(data: np.ndarray, rows: int | None) -> tuple[int, ...]:
+    """The shape of an array's chunks: whole rows, about a megabyte, as many in each as can be."""
+    if not data.ndim:
+        return ()
+    if not rows and data.nbytes <= CHUNK_BYTES:
+        return tuple(max(1, n) for n in data.shape)
+    most = max(1, CHUNK_BYTES * data.shape[0] // max(1, data.nbytes))
+    step = max(1, -(-data.shape[0] // max(1, -(-data.shape[0] // most))))
+    return (step, *(max(1, n) for n in data.shape[1:]))
 
 
 class SegmentReader:
-    """Reads fields of one segment; zarr arrays are opened once, chunks on demand."""
+    """Reads fields of one segment; arrays are opened once, chunks on demand."""
 
     def __init__(self, store: Any, path: str) -> None:
-        self._group = zarr.open_group(store, path=path, mode="r")
-        self._layout: dict[str, Any] = self._group.attrs["fields"]  # type: ignore[assignment]
+        self._group = _open_group(store, path)
+        self._layout: dict[str, Any] = self._group.attrs["fields"]
         self.by_item = bool(self._group.attrs["by_item"])
         self._arrays: dict[str, Any] = {}
 
@@ -136,6 +130,16 @@ class SegmentReader:
             block = array[start:stop]
             out += [_decode(row, entry) for row in block]
         return out
+
+
+def _open_group(store: Any, path: str) -> Any:
+    if isinstance(store, Path):
+        from reperform.storage.chunk_folder import ChunkFolder
+
+        return ChunkFolder(store / path)
+    from reperform.storage.zarr_group import open_zarr_group
+
+    return open_zarr_group(store, path)
 
 
 def _decode(data: Any, entry: Mapping[str, Any]) -> np.ndarray:

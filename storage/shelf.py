@@ -11,7 +11,6 @@ import functools
 import os
 import shutil
 import sys
-import time
 import uuid
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -48,12 +47,12 @@ class Shelf:
         return fs, root.rstrip("/")
 
     @functools.cached_property
-    def zarr_store(self) -> Any:
-        """The zarr store that holds all segments."""
-        from zarr.storage import FsspecStore, LocalStore
-
+    def segments(self) -> Any:
+        """What holds all segments: a folder, or a zarr store elsewhere."""
         if self.folder is not None:
-            return LocalStore(self.folder / SEGMENTS)
+            return self.folder / SEGMENTS
+        from zarr.storage import FsspecStore
+
         return FsspecStore.from_url(f"{self.url.rstrip('/')}/{SEGMENTS}")
 
     def write_segment(
@@ -65,17 +64,17 @@ class Shelf:
         name = f"{node}/{uuid.uuid4().hex}"
         if self.folder is None:
             try:
-                return name, write_segment(self.zarr_store, name, fields, by_item), ""
+                return name, write_segment(self.segments, name, fields, by_item), ""
             except failures() as error:
                 raise _explained(error, self.url) from error
         beside = f".writing-{uuid.uuid4().hex}"
         place = self.folder / SEGMENTS
         try:
-            size = write_segment(self.zarr_store, beside, fields, by_item)
+            size = write_segment(self.segments, beside, fields, by_item)
             (place / node).mkdir(parents=True, exist_ok=True)
             os.rename(place / beside, place / name)
         except OSError as error:
-            _remove_unfinished(place / beside)
+            shutil.rmtree(place / beside, ignore_errors=True)
             raise _explained(error, self.url) from error
         return name, size, self.stamp(name)
 
@@ -192,7 +191,7 @@ def is_remote(url: str) -> bool:
 def _open_reader(url: str, name: str) -> Any:
     from reperform.storage.segment import SegmentReader
 
-    return SegmentReader(open_shelf(url).zarr_store, name)
+    return SegmentReader(open_shelf(url).segments, name)
 
 
 @functools.lru_cache(maxsize=8)
@@ -204,17 +203,6 @@ def open_shelf(url: str) -> Shelf:
 def forget_open_files() -> None:
     """Drop readers kept open: needed only after stored files were changed behind our back."""
     _open_reader.cache_clear()
-
-
-def _remove_unfinished(folder: Path) -> None:
-    """Delete a folder that zarr's other writers, still busy for a moment, may make anew; gc removes what stays."""
-    quiet = 0
-    for _ in range(40):
-        quiet = 0 if folder.exists() else quiet + 1
-        if quiet == 5:
-            return
-        shutil.rmtree(folder, ignore_errors=True)
-        time.sleep(0.05)
 
 
 def failures() -> tuple[type[Exception], ...]:

@@ -109,7 +109,7 @@ class Store:
 
         rows = self.index.rows_of(name)
         try:
-            reader = SegmentReader(self.shelf.zarr_store, name)
+            reader = SegmentReader(self.shelf.segments, name)
         except UNREADABLE:
             return None
         return [
