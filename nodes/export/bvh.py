@@ -8,22 +8,25 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from reperform.nodes.export.atomic import beside
+from reperform.nodes.kernels.articulation import local_turns
+from reperform.nodes.products.mocap import Mocap
 from reperform.nodes.products.performance import SkeletonSequence
 
 
-def write_bvh(path: Path, skeleton: SkeletonSequence) -> None:
-    """Write positions as a hierarchy with rotations: channels Z X Y in degrees, metres; complete or absent.
+def write_bvh(path: Path, motion: SkeletonSequence | Mocap) -> None:
+    """Write a hierarchy with rotations: channels Z X Y in degrees, metres; complete or absent.
 
-    Rest pose: the directions of the first frame with every bone's median length. Per frame and joint, parents
-    first: the turn that best takes the rest directions of its children to the seen ones (Kabsch); a joint
-    with one child takes its parent's turn and the smallest swing that points the bone; a joint without
-    children its parent's turn. Root and bone directions are exact; lengths are constant, as the format wants
-    them.
+    Where only positions are known: the rest pose has the directions of the first frame with every bone's median
+    length. Per frame and joint, parents first: the turn that best takes the rest directions of its children to
+    the seen ones (Kabsch); a joint with one child takes its parent's turn and the smallest swing that points the
+    bone; a joint without children its parent's turn. Root and bone directions are exact; lengths are constant, as
+    the format wants them. Known rotations are written as they are. A joint `PARENT_end` becomes an end site.
 
     Raises ValueError unless there is one root, with parents before children.
 
     Source: Kabsch 1976, Acta Crystallographica A32.
     """
+    skeleton = motion.skeleton if isinstance(motion, Mocap) else motion
     joints = np.asarray(skeleton.joints, np.float64)
     parents, names = np.asarray(skeleton.parents), [str(name) for name in np.asarray(skeleton.names)]
     if (
@@ -39,8 +42,19 @@ def write_bvh(path: Path, skeleton: SkeletonSequence) -> None:
     children: list[list[int]] = [[] for _ in parents]
     for joint, parent in enumerate(parents[1:], 1):
         children[parent].append(joint)
-    offsets = _rest_offsets(joints, parents)
-    channels = _channels(joints, offsets, parents, children)
+    if isinstance(motion, Mocap):
+        offsets = np.asarray(motion.offset, np.float64)
+        local = local_turns(parents, np.asarray(motion.rotation, np.float64))
+    else:
+        offsets = _rest_offsets(joints, parents)
+        local = local_turns(parents, _turns(joints, offsets, parents, children))
+    order = [joint for joint in _depth_first(0, children) if not _ends(joint, names, children)]
+    channels = np.zeros((len(joints), 3 + 3 * len(order)))
+    channels[:, :3] = joints[:, 0]
+    for column, joint in enumerate(order):
+        # BVH multiplies in the listed order: Z, X, Y, intrinsic.
+        angles = Rotation.from_matrix(local[:, joint]).as_euler("ZXY", degrees=True)
+        channels[:, 3 + 3 * column : 6 + 3 * column] = angles
     lines = ["HIERARCHY", *_hierarchy(0, 0, names, offsets, children)]
     lines += ["MOTION", f"Frames: {len(joints)}", f"Frame Time: {1 / float(skeleton.fps):.8f}"]
     lines += [" ".join(f"{value:.6f}" for value in row) for row in channels]
@@ -57,13 +71,11 @@ def _rest_offsets(joints: np.ndarray, parents: np.ndarray) -> np.ndarray:
     return offsets
 
 
-def _channels(
+def _turns(
     joints: np.ndarray, offsets: np.ndarray, parents: np.ndarray, children: list[list[int]]
 ) -> np.ndarray:
-    """Rows of the MOTION block: root position, then three angles per joint in the order of the hierarchy."""
-    order = _depth_first(0, children)
-    rows = np.zeros((len(joints), 3 + 3 * len(parents)))
-    rows[:, :3] = joints[:, 0]
+    """Rotations in the world (T, J, 3, 3) that the positions tell."""
+    out = np.empty((*joints.shape[:2], 3, 3))
     for frame, positions in enumerate(joints):
         turns: list[Rotation] = [Rotation.identity()] * len(parents)
         for joint in range(len(parents)):
@@ -71,12 +83,13 @@ def _channels(
             turns[joint] = _turn(
                 above, offsets[children[joint]], positions[children[joint]] - positions[joint]
             )
-        for column, joint in enumerate(order):
-            above = turns[parents[joint]] if joint else Rotation.identity()
-            # BVH multiplies in the listed order: Z, X, Y, intrinsic.
-            angles = (above.inv() * turns[joint]).as_euler("ZXY", degrees=True)
-            rows[frame, 3 + 3 * column : 6 + 3 * column] = angles
-    return rows
+            out[frame, joint] = turns[joint].as_matrix()
+    return out
+
+
+def _ends(joint: int, names: list[str], children: list[list[int]]) -> bool:
+    """Whether a joint only ends a bone."""
+    return joint > 0 and not children[joint] and names[joint].endswith("_end")
 
 
 def _turn(above: Rotation, rest: np.ndarray, seen: np.ndarray) -> Rotation:
@@ -118,7 +131,15 @@ def _hierarchy(
         f"{pad}\tCHANNELS {'3 Zrotation Xrotation Yrotation' if depth else position}",
     ]
     for child in children[joint]:
-        lines += _hierarchy(child, depth + 1, names, offsets, children)
+        if _ends(child, names, children):
+            lines += _end_site(pad, offsets[child])
+        else:
+            lines += _hierarchy(child, depth + 1, names, offsets, children)
     if not children[joint]:
-        lines += [f"{pad}\tEnd Site", pad + "\t{", f"{pad}\t\tOFFSET 0.000000 0.000000 0.000000", pad + "\t}"]
+        lines += _end_site(pad, np.zeros(3))
     return [*lines, pad + "}"]
+
+
+def _end_site(pad: str, offset: np.ndarray) -> list[str]:
+    place = " ".join(f"{v:.6f}" for v in offset)
+    return [f"{pad}\tEnd Site", pad + "\t{", f"{pad}\t\tOFFSET {place}", pad + "\t}"]

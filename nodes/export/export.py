@@ -18,6 +18,7 @@ from reperform.nodes.export.usd import write_usd
 from reperform.nodes.export.video import write_mp4
 from reperform.nodes.products.footage import CleanPlate, Film, Footage, Mattes
 from reperform.nodes.products.mesh import MeshSequence, Surfaces, TextureAtlas
+from reperform.nodes.products.mocap import Mocap, SkeletalAnimation
 from reperform.nodes.products.motion import Animation, Dissimilarity
 from reperform.nodes.products.performance import Performance, SkeletonSequence
 from reperform.nodes.products.table import Table
@@ -41,6 +42,8 @@ def endings(kind: type) -> tuple[str, ...]:
         Animation: MESHES,
         Performance: (*MESHES, ".bvh"),
         SkeletonSequence: (".bvh",),
+        Mocap: (".bvh",),
+        SkeletalAnimation: (".bvh",),
         Table: (".csv",),
     }
     return (*table.get(kind, ()), ".npz")
@@ -69,7 +72,7 @@ def write(product: Any, path: Path | str, name: str = "", picture: Picture | Non
     elif ending == ".csv":
         write_csv(path, product)
     elif ending == ".bvh":
-        write_bvh(path, product.skeleton if isinstance(product, Performance) else product)
+        write_bvh(path, _moving_skeleton(product))
     elif ending in MESHES:
         _write_meshes(product, path, ending, name or path.stem)
     elif ending == ".mp4":
@@ -78,6 +81,12 @@ def write(product: Any, path: Path | str, name: str = "", picture: Picture | Non
         write_png(path, picture(product))
     else:
         _write_pictures(product, path)
+
+
+def _moving_skeleton(product: Any) -> SkeletonSequence | Mocap:
+    if isinstance(product, SkeletalAnimation):
+        return product.mocap
+    return product.skeleton if isinstance(product, Performance) else product
 
 
 def _pictures(product: Any) -> Iterator[np.ndarray]:

@@ -24,7 +24,11 @@ from reperform.viewer.pictures.photographs import (
 )
 from reperform.viewer.pictures.rig import camera_path_picture, cameras_picture
 from reperform.viewer.pictures.shape_tree import shape_tree_picture
-from reperform.viewer.pictures.skeleton import skeleton_picture
+from reperform.viewer.pictures.skeleton import (
+    mocap_picture,
+    skeletal_animation_picture,
+    skeleton_picture,
+)
 from reperform.viewer.pictures.surface import poses_picture, surface_picture
 from reperform.viewer.pictures.tabulate import Cell, draw_table, statistics_picture, table_picture
 
@@ -44,6 +48,8 @@ PAINTERS: dict[str, Painter] = {
     "ShapeTree": shape_tree_picture,
     "MotionPath": motion_path_picture,
     "SkeletonSequence": skeleton_picture,
+    "Mocap": mocap_picture,
+    "SkeletalAnimation": skeletal_animation_picture,
     "Table": table_picture,
 }
 

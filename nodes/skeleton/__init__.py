@@ -1,0 +1,1 @@
+"""Skeletons: joints of labelled surfaces, and motion capture from files."""
