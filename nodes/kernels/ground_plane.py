@@ -55,7 +55,7 @@ def align(
     return placement, float(w @ np.einsum("nk,nk->n", gap, gap))
 
 
-def rotate_ground(vectors: np.ndarray, yaw: float) -> np.ndarray:
+def rotate_ground(vectors: np.ndarray, yaw: float | np.ndarray) -> np.ndarray:
     """Turn ground vectors (..., 2), columns x and z, about the vertical."""
     c, s = np.cos(yaw), np.sin(yaw)
     x, z = vectors[..., 0], vectors[..., 1]

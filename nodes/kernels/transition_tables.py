@@ -1,0 +1,73 @@
+"""Precomputed distances along one edge of a parametric motion graph, ready for the search."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from reperform.nodes.kernels.control_cells import Cells, lattice_point, locate
+
+
+class SpaceTables(NamedTuple):
+    """One space as the search sees it."""
+
+    cells: Cells
+    # (C, places) -> reference
+    lattice: np.ndarray
+    halves: int
+    cyclic: bool
+    # (R, 2 K + 1) seconds from pose 0 of the run before to each pose
+    clock: np.ndarray
+    # (K, R, R) m^2
+    spread: np.ndarray
+    control: np.ndarray
+
+
+class EdgeTables(NamedTuple):
+    """One edge: source and target space, and squared distances (Ks, Rs, Kt, Rt)."""
+
+    source: SpaceTables
+    target: SpaceTables
+    distance: np.ndarray
+    # (Ks, Kt): the least of them between any references, for passing over poses that cannot win
+    least: np.ndarray
+    largest: float
+
+
+@njit(cache=True, nogil=True)
+def reference_weights(
+    space: SpaceTables, control: np.ndarray, corner: np.ndarray, reference: np.ndarray, weight: np.ndarray
+) -> None:
+    """The d + 1 references between which a control lies, and their weights; corner: (d + 1,) scratch."""
+    cell = locate(control, space.cells, corner)
+    lattice_point(corner, space.halves, reference, weight)
+    for k in range(len(reference)):
+        reference[k] = space.lattice[cell, reference[k]]
+
+
+@njit(cache=True, nogil=True)
+def variance(space: SpaceTables, pose: int, reference: np.ndarray, weight: np.ndarray) -> float:
+    """Mean squared distance of references from their blend: sum_pq r_p r_q |x_p - x_q|^2 / 2."""
+    total = 0.0
+    for p in range(len(reference)):
+        for q in range(p):
+            total += weight[p] * weight[q] * space.spread[pose, reference[p], reference[q]]
+    return total
+
+
+@njit(cache=True, nogil=True)
+def bound(
+    distance: np.ndarray, pose: int, reference: np.ndarray, weight: np.ndarray,
+    other_pose: int, other_reference: np.ndarray, other_weight: np.ndarray,
+) -> float:  # fmt: skip
+    """Upper bound of a squared distance: sum_pq r_p r_q D_pq (004 eq 4.5 for the dissimilarity)."""
+    total = 0.0
+    for p in range(len(reference)):
+        row = distance[pose, reference[p], other_pose]
+        part = 0.0
+        for q in range(len(other_reference)):
+            part += other_weight[q] * row[other_reference[q]]
+        total += weight[p] * part
+    return total

@@ -1,0 +1,63 @@
+"""The tables of a parametric motion graph, edge by edge, as the search wants them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from reperform.nodes.kernels.control_cells import framed
+from reperform.nodes.kernels.transition_tables import EdgeTables, SpaceTables
+from reperform.nodes.products.parametric import ParametricGraph
+
+
+def space_tables(graph: ParametricGraph, space: int) -> SpaceTables:
+    """The tables of one space."""
+    d, k, r, c = (
+        int(column[space]) for column in (graph.dimensions, graph.poses, graph.references, graph.cells)
+    )
+    before = slice(0, space)
+    halves = int(graph.halves)
+    first, cell = int(graph.references[before].sum()), int(graph.cells[before].sum())
+    control = np.asarray(graph.reference_control)[first : first + r, :d]
+    corners = np.asarray(graph.corners)[cell : cell + c, : d + 1]
+    places = (halves + 1) ** np.asarray(graph.dimensions)
+    at_place = int((graph.cells[before] * places[before]).sum())
+    at_step = int((graph.references[before] * graph.poses[before]).sum())
+    at_spread = int(
+        (graph.poses[before].astype(np.int64) * graph.references[before].astype(np.int64) ** 2).sum()
+    )
+    seconds = np.asarray(graph.seconds)[at_step : at_step + r * k].reshape(r, k)
+    return SpaceTables(
+        framed(control, corners),
+        np.ascontiguousarray(graph.lattice[at_place : at_place + c * places[space]].reshape(c, -1)),
+        halves,
+        bool(graph.cyclic[space]),
+        np.concatenate([np.zeros((r, 1)), np.cumsum(np.tile(seconds, 2), axis=1)], axis=1),
+        np.ascontiguousarray(graph.spread[at_spread : at_spread + k * r * r].reshape(k, r, r)),
+        np.ascontiguousarray(control),
+    )
+
+
+def edge_tables(graph: ParametricGraph, edge: int) -> EdgeTables:
+    """The tables of one edge."""
+    rows = graph.poses.astype(np.int64) * graph.references.astype(np.int64)
+    size = rows[graph.source] * rows[graph.target]
+    start = int(size[:edge].sum())
+    source, target = int(graph.source[edge]), int(graph.target[edge])
+    shape = (
+        int(graph.poses[source]), int(graph.references[source]), int(graph.poses[target]), int(graph.references[target])
+    )  # fmt: skip
+    table = np.ascontiguousarray(graph.distance[start : start + size[edge]]).reshape(shape)
+    least = np.ascontiguousarray(table.min(axis=(1, 3)), np.float64)
+    return EdgeTables(
+        space_tables(graph, source), space_tables(graph, target), table, least, float(graph.largest)
+    )
+
+
+def find_edge(graph: ParametricGraph, source: str, target: str) -> int:
+    """The edge between two spaces by name. Raises ValueError where there is none."""
+    names = np.asarray(graph.spaces)
+    for edge in range(len(graph.source)):
+        if names[graph.source[edge]] == source and names[graph.target[edge]] == target:
+            return edge
+    known = ", ".join(f"{names[s]}>{names[t]}" for s, t in zip(graph.source, graph.target, strict=True))
+    raise ValueError(f"motion_graph.parametric: no edge {source}>{target}; there are {known}")
