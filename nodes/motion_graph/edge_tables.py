@@ -28,12 +28,12 @@ def space_tables(graph: ParametricGraph, space: int) -> SpaceTables:
     seconds = np.asarray(graph.seconds)[at_step : at_step + r * k].reshape(r, k)
     return SpaceTables(
         framed(control, corners),
-        np.ascontiguousarray(graph.lattice[at_place : at_place + c * places[space]].reshape(c, -1)),
+        np.array(graph.lattice[at_place : at_place + c * places[space]].reshape(c, -1)),
         halves,
         bool(graph.cyclic[space]),
         np.concatenate([np.zeros((r, 1)), np.cumsum(np.tile(seconds, 2), axis=1)], axis=1),
-        np.ascontiguousarray(graph.spread[at_spread : at_spread + k * r * r].reshape(k, r, r)),
-        np.ascontiguousarray(control),
+        np.array(graph.spread[at_spread : at_spread + k * r * r].reshape(k, r, r)),
+        np.array(control),
     )
 
 
@@ -46,7 +46,7 @@ def edge_tables(graph: ParametricGraph, edge: int) -> EdgeTables:
     shape = (
         int(graph.poses[source]), int(graph.references[source]), int(graph.poses[target]), int(graph.references[target])
     )  # fmt: skip
-    table = np.ascontiguousarray(graph.distance[start : start + size[edge]]).reshape(shape)
+    table = np.array(graph.distance[start : start + size[edge]]).reshape(shape)
     least = np.ascontiguousarray(table.min(axis=(1, 3)), np.float64)
     return EdgeTables(
         space_tables(graph, source), space_tables(graph, target), table, least, float(graph.largest)

@@ -24,6 +24,8 @@ from reperform.nodes.products.parametric import ParametricSpace
 from reperform.nodes.products.performance import Contacts
 
 _WHO = "motion_graph.space"
+# inputs nearer to each other than this share of the range do the same
+_TWINS = 0.005
 
 
 @node(over="dataset", memory=2.0)
@@ -108,6 +110,7 @@ def _mapped(
                 "throughout; choose takes that differ in it, or another parameter"
             )
     control = (value - value.min(axis=0)) / span
+    _require_apart(control, names, parameters)
     corners = cells_of(control)
     weights, samples, table = check_invertible(sampler, control, corners, parameters, method, _WHO)
     error = inverse_error(sampler, control, corners, table)
@@ -117,6 +120,16 @@ def _mapped(
         corners, weights, samples, table.lower, table.upper, table.grid, table.inverse, error,
         np.array(marker, np.int32), np.asarray(outside == "refuse"), faces, np.asarray(fps, np.float32),
     )  # fmt: skip
+
+
+def _require_apart(control: np.ndarray, names: tuple[str, ...], parameters: tuple[Parameter, ...]) -> None:
+    apart = np.abs(control[:, None] - control[None]).max(axis=2) + np.eye(len(names))
+    if apart.min() < _TWINS:
+        one, other = divmod(int(np.argmin(apart)), len(names))
+        raise ValueError(
+            f"{_WHO}: the map from weights to {', '.join(parameters)} cannot be inverted: {names[one]} and "
+            f"{names[other]} do the same; leave out one of them, or add a parameter that tells them apart"
+        )
 
 
 def _chosen(known: tuple[str, ...], takes: tuple[str, ...]) -> tuple[str, ...]:

@@ -1,0 +1,193 @@
+import numpy as np
+import pytest
+
+from reperform.nodes.kernels.fixed_transitions import fixed_transition
+from reperform.nodes.kernels.ground_plane import Placement, apply
+from reperform.nodes.kernels.transition_search import (
+    best_transition,
+    dissimilarities,
+    fill_trellis,
+    new_found,
+    new_trellis,
+)
+from reperform.nodes.kernels.transition_tables import EdgeTables
+from reperform.nodes.motion_graph.edge_tables import edge_tables, find_edge
+from reperform.nodes.motion_graph.parametric import parametric
+from reperform.nodes.motion_graph.space import space
+from reperform.nodes.products.parametric import ParametricGraph, ParametricSpace
+
+
+@pytest.fixture(scope="module")
+def spaces(takes) -> dict[str, ParametricSpace]:
+    return {
+        "walk": space(*takes, takes=("slow", "fast")),
+        "turn": space(*takes, takes=("right", "left", "slow", "fast"), parameters=("turning", "speed")),
+        "hop": space(*takes, takes=("low", "high"), parameters=("height",), cyclic=False),
+    }
+
+
+@pytest.fixture(scope="module")
+def graph(spaces) -> ParametricGraph:
+    edges = ("walk>hop", "hop>walk", "walk>turn", "turn>hop")
+    return parametric(spaces, edges=edges, blend="linear", subdivisions=1, threshold=1.0)
+
+
+def played(made: ParametricSpace, pose: int, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Positions and velocities per 1/25 s of a linear blend, taken from the world, then brought to the root's frame."""
+    before = (pose - 1) % made.vertices.shape[1]
+    dx, dz, yaw = weights @ made.motion[:, before]
+    now = apply(
+        np.tensordot(weights, made.vertices[:, pose].astype(float), 1), Placement(yaw, np.array([dx, dz]))
+    )
+    then = np.tensordot(weights, made.vertices[:, before].astype(float), 1)
+    velocity = (now - then) / (25 * (weights @ made.seconds[:, before]))
+    c, s = np.cos(yaw), np.sin(yaw)
+    back = velocity @ np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
+    return np.tensordot(weights, made.vertices[:, pose].astype(float), 1), back
+
+
+def test_tables_hold_the_distance_of_played_meshes(graph, spaces):
+    tables = edge_tables(graph, find_edge(graph, "walk", "turn"))
+    a, b = (
+        played(spaces["walk"], 7, np.array([1.0, 0.0])),
+        played(spaces["turn"], 11, np.array([0.0, 1.0, 0.0, 0.0])),
+    )
+    exact = sum(((x - y) ** 2).sum() for x, y in zip(a, b, strict=True)) / len(a[0])
+    assert tables.distance[7, 0, 11, 1] == pytest.approx(exact, rel=1e-4)
+
+
+def trellises(tables: EdgeTables, depth: int):
+    a, b = new_trellis(tables.source, depth), new_trellis(tables.target, depth)
+    fill_trellis(tables.source, 3.0, np.full(tables.source.control.shape[1], 0.37), 1, depth, 0.1, a)
+    fill_trellis(tables.target, 20.0, np.full(tables.target.control.shape[1], 0.81), -1, depth, 0.1, b)
+    return a, b
+
+
+@pytest.mark.parametrize("edge", ["walk>hop", "turn>hop", "walk>turn"])
+def test_the_bound_holds_and_the_variance_makes_it_exact(graph, edge):
+    """Features of references, blended as weights say, give the distance itself: no bound, no table."""
+    tables = edge_tables(graph, find_edge(graph, *edge.split(">")))
+    a, b = trellises(tables, 6)
+    bound, exact = (np.zeros((a.size[0], b.size[0])) for _ in range(2))
+    dissimilarities(tables, a, b, False, bound)
+    dissimilarities(tables, a, b, True, exact)
+    rng = np.random.default_rng(3)
+    # points with the distances of the tables: classical scaling of all references of two poses
+    for s, t in zip(rng.integers(0, a.size[0], 40), rng.integers(0, b.size[0], 40), strict=True):
+        i, j = a.pose[s], b.pose[t]
+        cross = tables.distance[i][:, j].astype(float)
+        square = np.block([[tables.source.spread[i], cross], [cross.T, tables.target.spread[j]]])
+        centre = np.eye(len(square)) - 1 / len(square)
+        values, vectors = np.linalg.eigh(-0.5 * centre @ square @ centre)
+        points = vectors * np.sqrt(np.maximum(values, 0))
+        x = a.weight[s] @ points[a.reference[s]]
+        y = b.weight[t] @ points[len(cross) + b.reference[t]]
+        true = ((x - y) ** 2).sum() / tables.largest
+        assert bound[s, t] >= true - 1e-6
+        assert exact[s, t] == pytest.approx(true, abs=2e-5)
+
+
+def test_the_search_finds_the_cheapest_pair(graph):
+    tables = edge_tables(graph, find_edge(graph, "turn", "hop"))
+    for depth in (3, 8):
+        a, b = trellises(tables, depth)
+        shape = np.zeros((a.size[0], b.size[0]))
+        dissimilarities(tables, a, b, True, shape)
+        n, m = a.size[0], b.size[0]
+        cost = 1000 * shape + 5 * 25 * (a.seconds[:n, None] + b.seconds[None, :m])
+        found = new_found(tables)
+        state = (tables, 3.0, np.full(2, 0.37), 20.0, np.full(1, 0.81), depth, 0.1, 5.0)
+        assert best_transition(*state, 1.0, a, b, found)
+        assert found.cost[0] + found.cost[1] == pytest.approx(cost.min(), rel=1e-12)
+        s, t = np.unravel_index(np.argmin(cost), cost.shape)
+        assert (found.source_pose[0], found.target_pose[0]) == (a.pose[s], b.pose[t])
+        assert not best_transition(*state, 0.5 * float(shape.min()), a, b, found)
+
+
+def test_a_trellis_moves_on_in_time_and_little_by_little_in_controls(graph):
+    tables = edge_tables(graph, find_edge(graph, "walk", "hop"))
+    a, b = trellises(tables, 10)
+    poses = tables.source.spread.shape[0]
+    n, m = a.size[0], b.size[0]
+    step = (a.pose[:n] - 3) % poses
+    assert (np.abs(a.control[:n, 0] - 0.37) <= step / poses + 0.03 + (step == 0)).all()
+    assert a.control[:n].min() == 0
+    assert a.control[:n].max() == 1
+    assert a.seconds[:n].max() == pytest.approx(tables.source.clock[:, poses].mean(), rel=0.2)
+    # a hop is not run through twice: nothing before its first pose
+    assert b.pose[:m].min() >= 0
+    assert b.pose[:m].max() == 20
+    assert (np.diff(b.pose[:m]) <= 0).all()
+
+
+def test_any_pose_of_the_target_will_do_if_none_is_asked(graph):
+    tables = edge_tables(graph, find_edge(graph, "hop", "walk"))
+    a, b, found = new_trellis(tables.source, 10), new_trellis(tables.target, 10), new_found(tables)
+    assert best_transition(
+        tables, 30.0, np.array([0.5]), -1.0, np.array([0.2]), 10, 0.1, 5.0, 1.0, a, b, found
+    )
+    assert found.cost[3] == 0
+    assert found.target_control[0] == pytest.approx(0.2)
+
+
+def test_more_subdivisions_come_closer_to_the_distance_of_nonlinear_blends(spaces):
+    chosen = {name: spaces[name] for name in ("walk", "hop")}
+    errors = []
+    truth = parametric(chosen, edges=("walk>hop",), subdivisions=3)
+    fine = edge_tables(truth, 0)
+    for subdivisions in (0, 1, 2):
+        tables = edge_tables(parametric(chosen, edges=("walk>hop",), subdivisions=subdivisions), 0)
+        a, b = trellises(tables, 5)
+        x, y = trellises(fine, 5)
+        rough, best = np.zeros((a.size[0], b.size[0])), np.zeros((a.size[0], b.size[0]))
+        dissimilarities(tables, a, b, False, rough)
+        dissimilarities(fine, x, y, True, best)
+        errors.append(np.abs(rough - best).mean())
+    assert errors[1] < 0.4 * errors[0]
+    assert errors[2] < 0.4 * errors[1]
+
+
+def test_fixed_transitions_are_the_best_and_apart(graph):
+    edge = find_edge(graph, "walk", "hop")
+    tables = edge_tables(graph, edge)
+    mine = graph.fixed_edge == edge
+    poses, references, cost = graph.fixed_pose[mine], graph.fixed_reference[mine], graph.fixed_cost[mine]
+    assert len(poses) == 10
+    assert cost[0] == pytest.approx(tables.distance.min() / tables.largest)
+    assert (np.diff(cost) >= 0).all()
+    gaps = np.abs(poses[:, None] - poses[None]).max(axis=2)
+    assert gaps[~np.eye(len(gaps), dtype=bool)].min() >= 2
+    out = np.zeros(4)
+    one = (tables, poses[:1], references[:1], cost[:1])
+    last = int(poses[0, 1])
+    assert fixed_transition(*one, int(poses[0, 0]), tables.source.control[references[0, 0]].copy(),
+                            last, tables.target.control[references[0, 1]].copy(), 0.1, 5.0, out)  # fmt: skip
+    assert out[1:].tolist() == [0, 0, 0]
+    if last:
+        assert not fixed_transition(*one, 0, np.array([0.5]), last - 1, np.array([0.5]), 0.1, 5.0, out)
+
+
+def test_edges_are_suggested_where_motions_meet(spaces):
+    made = parametric(spaces, blend="linear", subdivisions=0, suggest=0.05)
+    pairs = {
+        (str(made.spaces[s]), str(made.spaces[t])) for s, t in zip(made.source, made.target, strict=True)
+    }
+    assert {("walk", "turn"), ("turn", "walk")} <= pairs
+    assert made.best.max() <= 0.05
+    assert made.core.sum() >= 2
+    alone = parametric(spaces, edges=("walk>hop",), blend="linear", subdivisions=0)
+    assert not alone.core.any()
+
+
+def test_errors_say_what_to_do(spaces, graph):
+    with pytest.raises(ValueError, match="SOURCE>TARGET"):
+        parametric(spaces, edges=("walk>fly",))
+    with pytest.raises(ValueError, match="raise suggest"):
+        parametric(
+            {name: spaces[name] for name in ("walk", "hop")}, blend="linear", subdivisions=0, suggest=0.0
+        )
+    with pytest.raises(ValueError, match="no edge hop>turn"):
+        find_edge(graph, "hop", "turn")
+    other = spaces["hop"]._replace(faces=spaces["hop"].faces[:-1])
+    with pytest.raises(ValueError, match="one topology"):
+        parametric({"walk": spaces["walk"], "hop": other})
