@@ -11,6 +11,7 @@ from reperform.nodes.products.parametric import ParametricGraph
 
 def space_tables(graph: ParametricGraph, space: int) -> SpaceTables:
     """The tables of one space."""
+    graph = _small_read(graph)
     d, k, r, c = (
         int(column[space]) for column in (graph.dimensions, graph.poses, graph.references, graph.cells)
     )
@@ -39,6 +40,7 @@ def space_tables(graph: ParametricGraph, space: int) -> SpaceTables:
 
 def edge_tables(graph: ParametricGraph, edge: int) -> EdgeTables:
     """The tables of one edge."""
+    graph = _small_read(graph)
     rows = graph.poses.astype(np.int64) * graph.references.astype(np.int64)
     size = rows[graph.source] * rows[graph.target]
     start = int(size[:edge].sum())
@@ -51,6 +53,12 @@ def edge_tables(graph: ParametricGraph, edge: int) -> EdgeTables:
     return EdgeTables(
         space_tables(graph, source), space_tables(graph, target), table, least, float(graph.largest)
     )
+
+
+def _small_read(graph: ParametricGraph) -> ParametricGraph:
+    """The graph with all but its distances read."""
+    fields = zip(graph._fields, graph, strict=True)
+    return ParametricGraph(*(field if name == "distance" else np.asarray(field) for name, field in fields))
 
 
 def find_edge(graph: ParametricGraph, source: str, target: str) -> int:
