@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import hashlib
 from typing import Annotated, Literal
 
 import numpy as np
 
 from reperform.nodes.declaration import Param, node
-from reperform.nodes.kernels.ground_plane_distance import ground_plane_distance
+from reperform.nodes.kernels.ground_plane_distance import ground_plane_distance, velocity
+from reperform.nodes.kernels.one_topology import require_one_rate, require_one_topology
 from reperform.nodes.product import Pair
 from reperform.nodes.products.mesh import MeshSequence
 from reperform.nodes.products.motion import Dissimilarity
@@ -41,33 +41,9 @@ def vertex_velocity(
     the whole sum, since takes start anywhere in the studio.
     """
     a, b = mesh
-    _require_same_topology(a, b)
-    if not np.isclose(a.fps, b.fps, rtol=1e-4):
-        raise ValueError(
-            f"vertex_velocity: both takes must have one frame rate, got {float(a.fps):g} and "
-            f"{float(b.fps):g} Hz: resample one of them"
-        )
+    require_one_topology("vertex_velocity", (a.faces, b.faces), (a.vertices.shape[1], b.vertices.shape[1]))
+    require_one_rate("vertex_velocity", a.fps, b.fps)
     distance = ground_plane_distance(
-        a.vertices, b.vertices, _velocity(a.vertices), _velocity(b.vertices), velocity_weight, align
+        a.vertices, b.vertices, velocity(a.vertices), velocity(b.vertices), velocity_weight, align
     )
     return Dissimilarity(distance.astype(np.float32))
-
-
-def _velocity(vertices: np.ndarray) -> np.ndarray:
-    if len(vertices) < 2:
-        return np.zeros_like(vertices)
-    steps = np.diff(vertices, axis=0)
-    return np.concatenate([steps[:1], steps])
-
-
-def _require_same_topology(a: MeshSequence, b: MeshSequence) -> None:
-    digests = [
-        hashlib.blake2b(np.ascontiguousarray(m.faces).tobytes(), digest_size=6).hexdigest() for m in (a, b)
-    ]
-    counts = [m.vertices.shape[1] for m in (a, b)]
-    if digests[0] != digests[1] or counts[0] != counts[1]:
-        raise ValueError(
-            "vertex_velocity: both takes must share one topology, got "
-            f"{counts[0]} vertices with faces {digests[0]} and {counts[1]} vertices with faces {digests[1]}: "
-            "align the takes first (align.register)"
-        )
