@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import threading
+
 import cv2
 import numpy as np
 
@@ -12,8 +14,8 @@ from reperform.nodes.product import Dataset
 from reperform.nodes.products.cameras import Cameras
 from reperform.nodes.products.footage import Footage
 
-# Frames whose grey pictures are kept: a parent and its children come soon after each other.
-_KEPT = 4
+# Frames whose grey pictures are kept: a parent and its children come soon after each other, on every branch.
+_KEPT = 8
 # Pyramid levels of the first look, and of those that start from a coarse fit.
 _FIRST, _LATER = 3, 1
 # Every other vertex is tracked: neighbours share most of their window.
@@ -26,6 +28,7 @@ class FrameViews:
     def __init__(self, footage: Dataset[Footage], cameras: Dataset[Cameras]) -> None:
         self._footage, self._cameras = footage, cameras
         self._pictures: dict[tuple[str, int], list[np.ndarray]] = {}
+        self._lock = threading.Lock()
 
     def tracker(
         self,
@@ -67,15 +70,18 @@ class FrameViews:
 
     def _grey(self, take: str, instant: int) -> list[np.ndarray]:
         key = (take, instant)
-        if key not in self._pictures:
+        pictures = self._pictures.get(key)
+        if pictures is None:
             images = self._footage[take].images
-            self._pictures[key] = [
+            pictures = [
                 cv2.cvtColor(np.asarray(images[instant, c]), cv2.COLOR_RGB2GRAY)
                 for c in range(images.shape[1])
             ]
-            while len(self._pictures) > _KEPT:
-                del self._pictures[next(iter(self._pictures))]
-        return self._pictures[key]
+            with self._lock:
+                self._pictures[key] = pictures
+                while len(self._pictures) > _KEPT:
+                    del self._pictures[next(iter(self._pictures))]
+        return pictures
 
 
 def _seen(

@@ -24,6 +24,7 @@ from reperform.nodes.kernels.registration import register as fit
 from reperform.nodes.kernels.spanning_tree import rehang
 from reperform.nodes.kernels.surface_pull import FitTarget, fit_target
 from reperform.nodes.kernels.take_chains import chain_takes
+from reperform.nodes.kernels.tree_walk import walk_tree
 from reperform.nodes.kernels.turn_search import likely_turns, turn_matrix
 from reperform.nodes.product import Dataset
 from reperform.nodes.products.aligned import AlignedSequence
@@ -37,9 +38,11 @@ _NEAR = 2
 _TURNS = 3
 # Normals count in the search for closest points like this distance (m): about the thickness of a limb.
 _NORMAL_LENGTH = 0.15
+# Branches of the tree that are followed at a time.
+_THREADS = 2
 
 
-@node(over="dataset", memory=2.0)
+@node(over="dataset", memory=2.0, threads=2)
 def register(
     surfaces: Dataset[Surfaces],
     tree: ShapeTree,
@@ -120,17 +123,22 @@ def register(
     figures = {int(order[0]): (0.0, 0.0)}
     lengths = edges(template.faces)
     names = [(str(tree.takes[frame.take]), frame.instant) for frame in frames]
+
+    def visit(k: int) -> None:
+        if k == order[0]:
+            return
+        target = fit_target(frames[k].vertices, frames[k].faces, pull.normal_length)
+        start = _start(template, frames, aligned, parent, k, target, stages[0].scale, pull)
+        tracker = None
+        if views is not None:
+            up = int(parent[k])
+            tracker = views.tracker((names[up], names[k]), aligned[up], template.faces, round_trip)
+        aligned[k] = fit(template, start, target, stages, pull, tracker)
+        figures[k] = _figures(template, aligned[k], frames[k], lengths)
+
     # the banded solves are small: several BLAS threads would only wait for each other, and could change bits
     with threadpool_limits(limits=1, user_api="blas"):
-        for k in map(int, order[1:]):
-            target = fit_target(frames[k].vertices, frames[k].faces, pull.normal_length)
-            start = _start(template, frames, aligned, parent, k, target, stages[0].scale, pull)
-            tracker = None
-            if views is not None:
-                up = int(parent[k])
-                tracker = views.tracker((names[up], names[k]), aligned[up], template.faces, round_trip)
-            aligned[k] = fit(template, start, target, stages, pull, tracker)
-            figures[k] = _figures(template, aligned[k], frames[k], lengths)
+        walk_tree(parent, order, visit, _THREADS)
     return {
         name: _sequence(
             surfaces[name], tree, number, template, aligned, figures, order[0], (residual_gate, stretch_gate)

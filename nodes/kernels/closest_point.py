@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import chain
+
 import numpy as np
 from numba import njit
 from scipy.spatial import cKDTree
@@ -29,10 +31,11 @@ def closest_points(
     group = np.floor(np.log2(np.maximum(radius, 1e-9))).astype(int)
     for size in np.unique(group):
         members = np.flatnonzero(group == size)
-        near = cKDTree(centres[members]).query_ball_point(points, bound + radius[members].max() + 1e-9)
-        counts = np.array([len(found) for found in near])
-        flat = np.concatenate([np.sort(found) for found in near]).astype(np.int64)
-        ends = np.concatenate([[0], np.cumsum(counts)])
+        near = cKDTree(centres[members]).query_ball_point(
+            points, bound + radius[members].max() + 1e-9, return_sorted=False
+        )
+        ends = np.concatenate([[0], np.cumsum([len(found) for found in near])])
+        flat = np.fromiter(chain.from_iterable(near), np.int64, ends[-1])
         _try_triangles(points, corners, members, flat, ends, face, barycentric, distance)
     return face, barycentric, distance
 
