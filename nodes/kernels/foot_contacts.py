@@ -60,7 +60,7 @@ def foot_contacts(
         near = np.flatnonzero(low.any(axis=0))
         count[near] += (low[:, near] & (_speeds(take[:, near], fps) < speed)).sum(axis=0)
     foot = _soles(count, takes[0][0], faces)
-    planted = [_planted(take, foot, fps, ground + height, speed) for take in takes]
+    planted = _planted(takes, foot, fps, height, speed)
     if foot.max() == 1 and not _left_first(foot, takes, planted, faces):
         foot = np.where(foot >= 0, 1 - foot, foot).astype(np.int8)
         planted = [rests[:, ::-1].copy() for rests in planted]
@@ -104,6 +104,7 @@ def _soles(count: np.ndarray, vertices: np.ndarray, faces: np.ndarray) -> np.nda
 def surface_lengths(vertices: np.ndarray, faces: np.ndarray) -> scipy.sparse.csr_matrix:
     """Symmetric matrix of the lengths of all edges, (V, V), m."""
     ends = edges(faces)
+    ends = ends[ends[:, 0] != ends[:, 1]]
     length = np.linalg.norm(vertices[ends[:, 0]].astype(np.float64) - vertices[ends[:, 1]], axis=1) + 1e-9
     half = scipy.sparse.coo_matrix((length, (ends[:, 0], ends[:, 1])), shape=(len(vertices),) * 2).tocsr()
     return half + half.T
@@ -129,15 +130,22 @@ def _left_first(
     return vote >= 0.0
 
 
-def _planted(take: np.ndarray, foot: np.ndarray, fps: float, top: float, speed: float) -> np.ndarray:
-    """(T, K): the mean of the sole is below `top` (m) and slower than `speed` (m/s), without flicker."""
-    feet = int(foot.max()) + 1
-    out = np.zeros((len(take), feet), bool)
+def _planted(
+    takes: Sequence[np.ndarray], foot: np.ndarray, fps: float, height: float, speed: float
+) -> list[np.ndarray]:
+    """Per take (T, K): the mean of the sole is within `height` (m) of where it lies and slower than `speed`.
+
+    Where it lies is the fifth percentile of its heights: each sole has a thickness of its own.
+    """
+    out = [np.zeros((len(take), int(foot.max()) + 1), bool) for take in takes]
     short = max(1, round(_SHORT * fps))
     line = np.ones(short, bool)
-    for k in range(feet):
-        centre = take[:, foot == k].mean(axis=1, keepdims=True, dtype=np.float64)
-        rests = (centre[:, 0, 1] < top) & (_speeds(centre, fps)[:, 0] < speed)
-        held = np.pad(rests, short, mode="edge")
-        out[:, k] = binary_opening(binary_closing(held, line), line)[short : len(held) - short]
+    for k in range(int(foot.max()) + 1):
+        centres = [take[:, foot == k].mean(axis=1, keepdims=True, dtype=np.float64) for take in takes]
+        top = float(np.percentile(np.concatenate([centre[:, 0, 1] for centre in centres]), 5)) + height
+        for centre, planted in zip(centres, out, strict=True):
+            rests = (centre[:, 0, 1] < top) & (_speeds(centre, fps)[:, 0] < speed)
+            held = np.pad(rests, short, mode="edge")
+            # a flicker is neither a contact nor a gap
+            planted[:, k] = binary_opening(binary_closing(held, line), line)[short : len(held) - short]
     return out

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
 import numpy as np
 
-from reperform.nodes.declaration import Param, node
+from reperform.nodes.declaration import node
 from reperform.nodes.kernels.foot_contacts import foot_contacts
 from reperform.nodes.kernels.foot_hold import hold_feet, leg_fields
 from reperform.nodes.kernels.path_contacts import path_contacts
 from reperform.nodes.product import Dataset
 from reperform.nodes.products.mesh import MeshSequence
 from reperform.nodes.products.motion import Animation
+from reperform.nodes.synthesis.contact_parameters import Ease, Height, Share, Speed
 
 _WHO = "synthesis.hold_contacts"
 
@@ -22,13 +21,10 @@ def hold_contacts(
     animation: Animation,
     meshes: Dataset[MeshSequence],
     *,
-    height: Annotated[float, Param("m", 0.001, 0.3, "over the ground, under which a foot may rest")] = 0.04,
-    speed: Annotated[float, Param("m/s", 0.01, 2.0, "under which a foot rests")] = 0.25,
-    share: Annotated[
-        float,
-        Param("1", 0.5, 1.0, "weight of the sources in which a foot rests, for it to rest in their blend"),
-    ] = 1.0,
-    ease: Annotated[float, Param("s", 0.02, 1.0, "over which a correction comes and goes")] = 0.12,
+    height: Height = 0.04,
+    speed: Speed = 0.25,
+    share: Share = 1.0,
+    ease: Ease = 0.12,
 ) -> Animation:
     """The same motion with every resting foot at one place for as long as it rests.
 
