@@ -9,18 +9,23 @@ from reperform.nodes.kernels.transition_search import RATE, SHAPE
 from reperform.nodes.kernels.transition_tables import EdgeTables, SpaceTables
 
 
-def choose_fixed(distance: np.ndarray, count: int, apart: int) -> tuple[np.ndarray, np.ndarray]:
+def choose_fixed(
+    distance: np.ndarray, count: int, apart: int, leave: int = 0, enter: int | None = None
+) -> tuple[np.ndarray, np.ndarray]:
     """The `count` pairs of least distance (Ks, Rs, Kt, Rt), best first: poses (n, 2), references (n, 2).
 
-    Two of them are at least `apart` poses from each other in the source or in the target.
+    Two of them are at least `apart` poses from each other in the source or in the target. leave: first pose at which
+    the source is left; enter: last pose at which the target is entered (default: any).
     """
     length, _, other_length, other_references = distance.shape
     rows = distance.transpose(0, 2, 1, 3).reshape(length, other_length, -1)
     least, which = rows.min(axis=2), rows.argmin(axis=2)
+    least[:leave] = np.inf
+    least[:, other_length if enter is None else enter + 1 :] = np.inf
     poses: list[tuple[int, int]] = []
     for flat in np.argsort(least, axis=None, kind="stable").tolist():
         m, n = divmod(flat, other_length)
-        if all(abs(m - p) >= apart or abs(n - q) >= apart for p, q in poses):
+        if np.isfinite(least[m, n]) and all(abs(m - p) >= apart or abs(n - q) >= apart for p, q in poses):
             poses.append((m, n))
             if len(poses) == count:
                 break

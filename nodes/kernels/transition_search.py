@@ -10,7 +10,6 @@ from numba import njit
 from reperform.nodes.kernels.transition_tables import (
     EdgeTables,
     SpaceTables,
-    bound,
     reference_weights,
     variance,
 )  # fmt: skip
@@ -31,6 +30,9 @@ class Trellis(NamedTuple):
     reference: np.ndarray
     weight: np.ndarray
     variance: np.ndarray
+    # first and last + 1 state at each moment; -1 where they are not laid out yet
+    begin: np.ndarray
+    end: np.ndarray
     # scratch
     corner: np.ndarray
     start: np.ndarray
@@ -47,24 +49,33 @@ class Found(NamedTuple):
     target_control: np.ndarray
     # E_S, lambda E_L (thousandths), seconds until the transition and seconds from there to the wanted state
     cost: np.ndarray
+    # scratch: least cost of every pair of moments
+    lower: np.ndarray
 
 
-def new_trellis(space: SpaceTables, depth: int) -> Trellis:
-    """Room for a trellis of a depth, or for all poses of the space."""
-    d = space.control.shape[1]
-    room = max((depth + 1) * (1 + 2 * d * depth), space.spread.shape[0])
+def new_trellis(space: SpaceTables, depth: int, step: float = 0.1) -> Trellis:
+    """Room for a trellis of a depth at every pose."""
+    d, poses = space.control.shape[1], space.spread.shape[0]
+    moments = max(round(depth * step * poses), depth, poses) + 2
+    room = moments * (1 + d * (2 + int(1 / step)))
     return Trellis(
         np.zeros(1, np.int64), np.zeros(room, np.int64), np.zeros((room, d)), np.zeros(room),
-        np.zeros((room, d + 1), np.int64), np.zeros((room, d + 1)), np.zeros(room), np.zeros(d + 1), np.zeros(d),
+        np.zeros((room, d + 1), np.int64), np.zeros((room, d + 1)), np.zeros(room), np.zeros(moments, np.int64),
+        np.zeros(moments, np.int64), np.zeros(d + 1), np.zeros(d),
     )  # fmt: skip
 
 
-def new_found(tables: EdgeTables) -> Found:
-    """Room for a transition."""
+def new_found(tables: EdgeTables, depth: int = 20, step: float = 0.1) -> Found:
+    """Room for a transition, found with trellises up to a depth."""
     source, target = tables.source.control.shape[1], tables.target.control.shape[1]
+    moments = [
+        max(round(depth * step * side.spread.shape[0]), side.spread.shape[0]) + 2
+        for side in (tables.source, tables.target)
+    ]
     return Found(
-        np.zeros(1, np.int64), np.zeros(source), np.zeros(1, np.int64), np.zeros(target), np.zeros(4)
-    )
+        np.zeros(1, np.int64), np.zeros(source), np.zeros(1, np.int64), np.zeros(target), np.zeros(4),
+        np.zeros((moments[0], moments[1])),
+    )  # fmt: skip
 
 
 @njit(cache=True, nogil=True)
@@ -92,27 +103,34 @@ def fill_trellis(
         at = first + direction * int(np.round(k * step * poses))
         if not space.cyclic and (at < 0 or at > poses - 1):
             break
-        out.start[:] = control
-        _add(space, first, at, direction, out)
-        for axis in range(len(control)):
-            for sign in (-1.0, 1.0):
-                for j in range(1, k + 1):
-                    before = min(max(control[axis] + sign * (j - 1) * step, 0.0), 1.0)
-                    value = min(max(control[axis] + sign * j * step, 0.0), 1.0)
-                    if abs(value - before) < _SAME:
-                        break
-                    out.start[:] = control
-                    out.start[axis] = value
-                    _add(space, first, at, direction, out)
+        _lay_out(space, first, at, direction, control, k, step, out)
 
 
 @njit(cache=True, nogil=True)
-def fill_poses(space: SpaceTables, control: np.ndarray, first: int, last: int, out: Trellis) -> None:
-    """The poses first .. last of a space at one control, all of them at once: where the wanted state does not matter."""
-    out.size[0] = 0
-    for pose in range(max(first, 0), min(last, space.spread.shape[0] - 1) + 1):
-        out.start[:] = control
-        _add(space, pose, pose, 1, out)
+def _lay_out(
+    space: SpaceTables,
+    first: int,
+    at: int,
+    direction: int,
+    control: np.ndarray,
+    changes: int,
+    step: float,
+    out: Trellis,
+) -> None:
+    """All states at one moment: the control as it is, and each of its entries up to so many steps away."""
+    out.start[:] = control
+    _add(space, first, at, direction, out)
+    for axis in range(len(control)):
+        for side in range(2):
+            sign = 2.0 * side - 1.0
+            for j in range(1, changes + 1):
+                before = min(max(control[axis] + sign * (j - 1) * step, 0.0), 1.0)
+                value = min(max(control[axis] + sign * j * step, 0.0), 1.0)
+                if abs(value - before) < _SAME:
+                    break
+                out.start[axis] = value
+                _add(space, first, at, direction, out)
+        out.start[axis] = control[axis]
 
 
 @njit(cache=True, nogil=True)
@@ -139,6 +157,18 @@ def _add(space: SpaceTables, first: int, at: int, direction: int, out: Trellis) 
 
 
 @njit(cache=True, nogil=True)
+def bound(distance: np.ndarray, source: Trellis, s: int, target: Trellis, t: int) -> float:
+    """Upper bound of a squared distance: sum_pq r_p r_q D_pq (004 eq 4.5 for the dissimilarity)."""
+    total, i, j = 0.0, source.pose[s], target.pose[t]
+    for p in range(source.reference.shape[1]):
+        row, part = source.reference[s, p], 0.0
+        for q in range(target.reference.shape[1]):
+            part += target.weight[t, q] * distance[i, row, j, target.reference[t, q]]
+        total += source.weight[s, p] * part
+    return total
+
+
+@njit(cache=True, nogil=True)
 def dissimilarities(
     tables: EdgeTables, source: Trellis, target: Trellis, exact: bool, out: np.ndarray
 ) -> None:
@@ -152,58 +182,10 @@ def dissimilarities(
     """
     for s in range(source.size[0]):
         for t in range(target.size[0]):
-            value = bound(
-                tables.distance, source.pose[s], source.reference[s], source.weight[s],
-                target.pose[t], target.reference[t], target.weight[t],
-            )  # fmt: skip
+            value = bound(tables.distance, source, s, target, t)
             if exact:
                 value = max(value - source.variance[s] - target.variance[t], 0.0)
             out[s, t] = value / tables.largest
-
-
-@njit(cache=True, nogil=True)
-def cheapest(
-    tables: EdgeTables,
-    source: Trellis,
-    target: Trellis,
-    latency_weight: float,
-    threshold: float,
-    found: Found,
-) -> bool:
-    """The transition of least E_S + lambda E_L between the states of two trellises; False where none is allowed.
-
-    E_S = 1000 dissimilarity, E_L = frames (1/25 s) to the transition and from it to the wanted state. Transitions
-    above the threshold are refused. Pairs of poses whose least tabulated distance cannot beat the best so far are passed
-    over.
-
-    Source: 004 eqs 4.2, 4.6. Departure: dissimilarity is minimised (as printed, a similarity is).
-    """
-    best, scale = np.inf, SHAPE / tables.largest
-    for s in range(source.size[0]):
-        waited = latency_weight * RATE * source.seconds[s]
-        if waited >= best:
-            continue
-        for t in range(target.size[0]):
-            latency = waited + latency_weight * RATE * target.seconds[t]
-            apart = source.variance[s] + target.variance[t]
-            if (
-                scale * (tables.least[source.pose[s], target.pose[t]] - apart) + latency >= best
-                or latency >= best
-            ):
-                continue
-            value = bound(
-                tables.distance, source.pose[s], source.reference[s], source.weight[s],
-                target.pose[t], target.reference[t], target.weight[t],
-            )  # fmt: skip
-            value = max(value - apart, 0.0) / tables.largest
-            if value <= threshold and SHAPE * value + latency < best:
-                best = SHAPE * value + latency
-                found.source_pose[0], found.target_pose[0] = source.pose[s], target.pose[t]
-                found.source_control[:] = source.control[s]
-                found.target_control[:] = target.control[t]
-                found.cost[0], found.cost[1] = SHAPE * value, latency
-                found.cost[2], found.cost[3] = source.seconds[s], target.seconds[t]
-    return best < np.inf
 
 
 @njit(cache=True, nogil=True)
@@ -211,14 +193,110 @@ def best_transition(
     tables: EdgeTables, source_pose: float, source_control: np.ndarray, target_pose: float, target_control: np.ndarray,
     depth: int, step: float, latency_weight: float, threshold: float, source: Trellis, target: Trellis, found: Found,
 ) -> bool:  # fmt: skip
-    """The best transition from a state of the source space to a state of the target space; False: stay.
+    """The transition of least E_S + lambda E_L from a state of the source to a state of the target; False: stay.
 
-    Poses in 0 .. K, controls (d,) in 0 .. 1. target_pose < 0: any pose of the target will do, and nothing is counted
-    after the transition. source, target, found: room from new_trellis and new_found; nothing is allocated.
+    E_S = 1000 dissimilarity, E_L = frames (1/25 s) to the transition and from it to the wanted state. Poses in 0 .. K,
+    controls (d,) in 0 .. 1. target_pose < 0: any pose of the target will do, and nothing is counted after the
+    transition. Transitions above the threshold (dissimilarity) are refused. source, target, found: room from
+    new_trellis and new_found; nothing is allocated.
+
+    Trellises reach `depth` steps, as in `fill_trellis`, but pass every pose. Pairs of moments are visited from the
+    least lower bound of their cost (least tabulated distance less the greatest variance, quickest way there) until no
+    bound is below the best, so the result is the best of all states though few are laid out.
+
+    Source: 004 eqs 4.2, 4.6, section 4.4.1; Land and Doig 1960, Econometrica 28 (branch and bound).
+    Departure: dissimilarity is minimised (as printed, a similarity is); every pose, where 004 takes one in ten.
     """
-    fill_trellis(tables.source, source_pose, source_control, 1, depth, step, source)
-    if target_pose < 0:
-        fill_poses(tables.target, target_control, 0, tables.target.spread.shape[0] - 1, target)
-    else:
-        fill_trellis(tables.target, target_pose, target_control, -1, depth, step, target)
-    return cheapest(tables, source, target, latency_weight, threshold, found)
+    anywhere = target_pose < 0
+    first = int(np.floor(source_pose + 0.5))
+    last = 0 if anywhere else int(np.floor(target_pose + 0.5))
+    poses = tables.target.spread.shape[0]
+    m = _moments(tables.source, first, 1, depth, step)
+    n = poses if anywhere else _moments(tables.target, last, -1, depth, step)
+    latency = latency_weight * RATE
+    _lower_bounds(tables, first, last, m, n, anywhere, latency, found.lower)
+    source.size[0], target.size[0] = 0, 0
+    source.begin[:m], target.begin[:n] = -1, -1
+    best = np.inf
+    while True:
+        i, j, least = 0, 0, np.inf
+        for a in range(m):
+            for b in range(n):
+                if found.lower[a, b] < least:
+                    i, j, least = a, b, found.lower[a, b]
+        if least >= best:
+            break
+        found.lower[i, j] = np.inf
+        if source.begin[i] < 0:
+            changes = int(i / (step * tables.source.spread.shape[0]) + _SAME)
+            _at_moment(tables.source, first, i, 1, source_control, changes, step, source)
+        if target.begin[j] < 0:
+            changes = 0 if anywhere else int(j / (step * poses) + _SAME)
+            _at_moment(tables.target, j if anywhere else last, 0 if anywhere else j, -1, target_control, changes, step,
+                       target, j)  # fmt: skip
+        best = _cheapest(tables, source, i, target, j, latency, threshold, best, found)
+    return best < np.inf
+
+
+@njit(cache=True, nogil=True)
+def _moments(space: SpaceTables, first: int, direction: int, depth: int, step: float) -> int:
+    """Poses that can be reached, with the first."""
+    poses = space.spread.shape[0]
+    count = int(np.round(depth * step * poses)) + 1
+    if space.cyclic:
+        return count
+    return max(1, min(count, poses - first if direction > 0 else first + 1))
+
+
+@njit(cache=True, nogil=True)
+def _lower_bounds(
+    tables: EdgeTables, first: int, last: int, m: int, n: int, anywhere: bool, latency: float, out: np.ndarray
+) -> None:
+    """What a transition between two moments costs at least."""
+    scale = SHAPE / tables.largest
+    length, other = tables.source.spread.shape[0], tables.target.spread.shape[0]
+    waited = 0.0
+    for i in range(m):
+        at = (first + i) % length
+        passed = 0.0
+        for j in range(n):
+            to = j if anywhere else (last - j) % other
+            if j > 0 and not anywhere:
+                passed += tables.target.quickest[to]
+            shape = tables.least[at, to] - tables.source.loosest[at] - tables.target.loosest[to]
+            out[i, j] = max(scale * shape, 0.0) + latency * (waited + passed)
+        waited += tables.source.quickest[at]
+
+
+@njit(cache=True, nogil=True)
+def _at_moment(
+    space: SpaceTables, first: int, moment: int, direction: int, control: np.ndarray, changes: int, step: float,
+    out: Trellis, slot: int = -1,
+) -> None:  # fmt: skip
+    slot = moment if slot < 0 else slot
+    out.begin[slot] = out.size[0]
+    _lay_out(space, first, first + direction * moment, direction, control, changes, step, out)
+    out.end[slot] = out.size[0]
+
+
+@njit(cache=True, nogil=True)
+def _cheapest(
+    tables: EdgeTables, source: Trellis, i: int, target: Trellis, j: int, latency: float, threshold: float,
+    best: float, found: Found,
+) -> float:  # fmt: skip
+    """The least cost among the states of two moments, if it is below `best`; `found` then holds it."""
+    for s in range(source.begin[i], source.end[i]):
+        for t in range(target.begin[j], target.end[j]):
+            late = latency * (source.seconds[s] + target.seconds[t])
+            if late >= best:
+                continue
+            value = bound(tables.distance, source, s, target, t) - source.variance[s] - target.variance[t]
+            value = max(value, 0.0) / tables.largest
+            if value <= threshold and SHAPE * value + late < best:
+                best = SHAPE * value + late
+                found.source_pose[0], found.target_pose[0] = source.pose[s], target.pose[t]
+                found.source_control[:] = source.control[s]
+                found.target_control[:] = target.control[t]
+                found.cost[0], found.cost[1] = SHAPE * value, late
+                found.cost[2], found.cost[3] = source.seconds[s], target.seconds[t]
+    return best

@@ -20,8 +20,12 @@ class SpaceTables(NamedTuple):
     cyclic: bool
     # (R, 2 K + 1) seconds from pose 0 of the run before to each pose
     clock: np.ndarray
+    # (K,) seconds from each pose to the next, at the quickest
+    quickest: np.ndarray
     # (K, R, R) m^2
     spread: np.ndarray
+    # (K,) greatest variance that a blend of neighbouring references can have
+    loosest: np.ndarray
     control: np.ndarray
 
 
@@ -54,20 +58,4 @@ def variance(space: SpaceTables, pose: int, reference: np.ndarray, weight: np.nd
     for p in range(len(reference)):
         for q in range(p):
             total += weight[p] * weight[q] * space.spread[pose, reference[p], reference[q]]
-    return total
-
-
-@njit(cache=True, nogil=True)
-def bound(
-    distance: np.ndarray, pose: int, reference: np.ndarray, weight: np.ndarray,
-    other_pose: int, other_reference: np.ndarray, other_weight: np.ndarray,
-) -> float:  # fmt: skip
-    """Upper bound of a squared distance: sum_pq r_p r_q D_pq (004 eq 4.5 for the dissimilarity)."""
-    total = 0.0
-    for p in range(len(reference)):
-        row = distance[pose, reference[p], other_pose]
-        part = 0.0
-        for q in range(len(other_reference)):
-            part += other_weight[q] * row[other_reference[q]]
-        total += weight[p] * part
     return total

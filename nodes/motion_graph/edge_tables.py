@@ -27,15 +27,27 @@ def space_tables(graph: ParametricGraph, space: int) -> SpaceTables:
         (graph.poses[before].astype(np.int64) * graph.references[before].astype(np.int64) ** 2).sum()
     )
     seconds = np.asarray(graph.seconds)[at_step : at_step + r * k].reshape(r, k)
+    places_here = np.array(graph.lattice[at_place : at_place + c * places[space]].reshape(c, -1))
+    spread = np.array(graph.spread[at_spread : at_spread + k * r * r].reshape(k, r, r))
     return SpaceTables(
         framed(control, corners),
-        np.array(graph.lattice[at_place : at_place + c * places[space]].reshape(c, -1)),
+        places_here,
         halves,
         bool(graph.cyclic[space]),
         np.concatenate([np.zeros((r, 1)), np.cumsum(np.tile(seconds, 2), axis=1)], axis=1),
-        np.array(graph.spread[at_spread : at_spread + k * r * r].reshape(k, r, r)),
+        np.ascontiguousarray(seconds.min(axis=0)),
+        spread,
+        _loosest(spread, control, halves),
         np.array(control),
     )
+
+
+def _loosest(spread: np.ndarray, control: np.ndarray, halves: int) -> np.ndarray:
+    """sum_p>q w_p w_q s_pq <= max s_pq (1 - 1/(d + 1)) / 2 over references that are neighbours: (K,)."""
+    d = control.shape[1]
+    gap = np.abs(control[:, None] - control[None]).max(axis=2)
+    near = gap <= 1.0 / halves + 1e-9
+    return np.asarray(np.where(near, spread, 0.0).max(axis=(1, 2)) * (1.0 - 1.0 / (d + 1)) / 2.0, np.float64)
 
 
 def edge_tables(graph: ParametricGraph, edge: int) -> EdgeTables:

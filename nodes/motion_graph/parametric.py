@@ -15,8 +15,10 @@ from reperform.nodes.product import Dataset
 from reperform.nodes.products.parametric import ParametricGraph, ParametricSpace
 
 _WHO = "motion_graph.parametric"
-# fixed transitions are this share of a run apart
+# fixed transitions are this share of a run apart; they enter a motion that is not cyclic within this share of its
+# begin, and leave it within the same of its end, or they could hardly be used
 _APART = 0.1
+_ENTRY = 0.3
 
 
 @node(over="dataset", memory=4.0)
@@ -40,7 +42,7 @@ def parametric(
     latency_weight: Annotated[
         float,
         Param("1", 0.0, 1000.0, "lambda: thousandths of the largest dissimilarity that 1/25 s is worth"),
-    ] = 5.0,
+    ] = 0.4,
     depth: Annotated[int, Param("1", 1, 20, "steps of the trellis")] = 10,
     step: Annotated[
         float, Param("1", 0.01, 1.0, "of the trellis, as a share of a run and of a control's range")
@@ -121,7 +123,8 @@ def _graph(
     spread = [
         np.stack([squared_distances(pose, pose) for pose in references.features]) for references in made
     ]
-    chosen = [choose_fixed(table, fixed, max(1, round(_APART * table.shape[0]))) for table in tables.values()]
+    cyclic = [bool(spaces[name].cyclic) for name in names]
+    chosen = [_fixed(table, fixed, cyclic[i], cyclic[j]) for (i, j), table in tables.items()]
     costs = [
         table[poses[:, 0], rows[:, 0], poses[:, 1], rows[:, 1]] / largest
         for table, (poses, rows) in zip(tables.values(), chosen, strict=True)
@@ -131,7 +134,7 @@ def _graph(
     return ParametricGraph(
         spaces=np.array(names),
         poses=np.array([references.features.shape[0] for references in made], np.int32),
-        cyclic=np.array([bool(spaces[name].cyclic) for name in names]),
+        cyclic=np.array(cyclic),
         dimensions=np.array([control.shape[1] for control in controls], np.int32),
         references=np.array([len(control) for control in controls], np.int32),
         cells=np.array([len(cells) for cells in corners], np.int32),
@@ -160,6 +163,15 @@ def _graph(
         step=zero,
         threshold=zero,
     )
+
+
+def _fixed(
+    table: np.ndarray, count: int, source_cyclic: bool, target_cyclic: bool
+) -> tuple[np.ndarray, np.ndarray]:
+    """Fixed transitions of one edge."""
+    leave = 0 if source_cyclic else int((1 - _ENTRY) * table.shape[0])
+    enter = None if target_cyclic else int(_ENTRY * table.shape[2])
+    return choose_fixed(table, count, max(1, round(_APART * table.shape[0])), leave, enter)
 
 
 def _core(source: np.ndarray, target: np.ndarray, count: int) -> np.ndarray:

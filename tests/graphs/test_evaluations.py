@@ -28,6 +28,19 @@ FIGURES = {
         "utrecht_frames": (">=", 200.0),
         "samba_join_acceleration_ratio": ("<=", 1.0),
     },
+    "transition_latency": {
+        "search_ms_depth10": ("<=", 0.1),
+        "online_latency_over_precomputed": ("<=", 0.6),
+        "online_cost_over_precomputed": ("<=", 1.1),
+    },
+    "transition_similarity": {
+        "avg_error_2sub": ("<=", 0.6),
+        "max_error_2sub": ("<=", 1.7),
+        "online_ms": ("<=", 1.0),
+        "online_speedup_vs_exact": (">=", 10000.0),
+        "offline_s": ("<=", 10.0),
+        "bound_violations": ("<=", 0.0),
+    },
 }
 
 

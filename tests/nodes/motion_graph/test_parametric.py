@@ -10,7 +10,7 @@ from reperform.nodes.kernels.transition_search import (
     new_found,
     new_trellis,
 )
-from reperform.nodes.kernels.transition_tables import EdgeTables
+from reperform.nodes.kernels.transition_tables import EdgeTables, SpaceTables
 from reperform.nodes.motion_graph.edge_tables import edge_tables, find_edge
 from reperform.nodes.motion_graph.parametric import parametric
 from reperform.nodes.motion_graph.space import space
@@ -87,21 +87,49 @@ def test_the_bound_holds_and_the_variance_makes_it_exact(graph, edge):
         assert exact[s, t] == pytest.approx(true, abs=2e-5)
 
 
-def test_the_search_finds_the_cheapest_pair(graph):
-    tables = edge_tables(graph, find_edge(graph, "turn", "hop"))
-    for depth in (3, 8):
-        a, b = trellises(tables, depth)
-        shape = np.zeros((a.size[0], b.size[0]))
-        dissimilarities(tables, a, b, True, shape)
-        n, m = a.size[0], b.size[0]
-        cost = 1000 * shape + 5 * 25 * (a.seconds[:n, None] + b.seconds[None, :m])
-        found = new_found(tables)
-        state = (tables, 3.0, np.full(2, 0.37), 20.0, np.full(1, 0.81), depth, 0.1, 5.0)
-        assert best_transition(*state, 1.0, a, b, found)
-        assert found.cost[0] + found.cost[1] == pytest.approx(cost.min(), rel=1e-12)
-        s, t = np.unravel_index(np.argmin(cost), cost.shape)
-        assert (found.source_pose[0], found.target_pose[0]) == (a.pose[s], b.pose[t])
-        assert not best_transition(*state, 0.5 * float(shape.min()), a, b, found)
+def every_state(side: SpaceTables, pose: int, control: np.ndarray, direction: int, depth: int):
+    """All states within a depth, at every pose: (pose, control, seconds) one by one."""
+    poses, room, rows = side.spread.shape[0], new_trellis(side, 40), []
+    step_seconds = np.diff(side.clock, axis=1)
+    for moment in range(round(depth * 0.1 * poses) + 1):
+        at = pose + direction * moment
+        if not side.cyclic and not 0 <= at < poses:
+            break
+        passed = np.arange(min(pose, at), max(pose, at)) % poses
+        changes = int(moment / (0.1 * poses) + 1e-9)
+        for axis in range(len(control)):
+            for j in range(-changes, changes + 1):
+                u = control.copy()
+                u[axis] = min(max(u[axis] + 0.1 * j, 0), 1)
+                fill_trellis(side, at % poses, u, 1, 0, 0.1, room)
+                seconds = room.weight[0] @ step_seconds[room.reference[0]][:, passed].sum(axis=1)
+                rows.append((at % poses, u, seconds))
+    return rows
+
+
+def test_the_search_finds_the_cheapest_of_all_states(graph):
+    for edge, weight in (("walk>hop", 5.0), ("walk>hop", 0.3), ("turn>hop", 1.0), ("hop>walk", 1.0)):
+        tables = edge_tables(graph, find_edge(graph, *edge.split(">")))
+        u, v = (
+            np.full(side.control.shape[1], c) for side, c in ((tables.source, 0.37), (tables.target, 0.81))
+        )
+        depth, start, end = 3, 9, 20
+        x, y = new_trellis(tables.source, depth), new_trellis(tables.target, depth)
+        found, one = new_found(tables), np.zeros((1, 1))
+        room = (tables, start, u, end, v, depth, 0.1, weight)
+        assert best_transition(*room, 1.0, x, y, found)
+        cost, shapes = found.cost[0] + found.cost[1], []
+        costs = []
+        states = every_state(tables.target, end, v, -1, depth)
+        for pose, control, seconds in every_state(tables.source, start, u, 1, depth):
+            fill_trellis(tables.source, pose, control, 1, 0, 0.1, x)
+            for other, target_control, more in states:
+                fill_trellis(tables.target, other, target_control, 1, 0, 0.1, y)
+                dissimilarities(tables, x, y, True, one)
+                shapes.append(float(one[0, 0]))
+                costs.append(1000 * shapes[-1] + weight * 25 * (seconds + more))
+        assert cost == pytest.approx(min(costs), rel=1e-6)
+        assert not best_transition(*room, 0.99 * min(shapes), x, y, found)
 
 
 def test_a_trellis_moves_on_in_time_and_little_by_little_in_controls(graph):
