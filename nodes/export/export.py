@@ -17,6 +17,7 @@ from reperform.nodes.export.table import write_csv
 from reperform.nodes.export.usd import write_usd
 from reperform.nodes.export.video import write_mp4
 from reperform.nodes.products.footage import CleanPlate, Film, Footage, Mattes
+from reperform.nodes.products.key_frame_table import KeyFrameTable
 from reperform.nodes.products.mesh import MeshSequence, Surfaces, TextureAtlas
 from reperform.nodes.products.mocap import Mocap, SkeletalAnimation
 from reperform.nodes.products.motion import Animation, Dissimilarity
@@ -45,6 +46,7 @@ def endings(kind: type) -> tuple[str, ...]:
         Mocap: (".bvh",),
         SkeletalAnimation: (".bvh",),
         Table: (".csv",),
+        KeyFrameTable: (".csv",),
     }
     return (*table.get(kind, ()), ".npz")
 

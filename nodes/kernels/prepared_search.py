@@ -52,9 +52,7 @@ class PreparedSearch:
         error = np.zeros(len(units)) if free else np.abs(moves.length - units * quantum)
         width = 1 if free else int(reach / quantum) + 2
         keep = int(moves.steps.max(initial=0)) + 1
-        table = WalkTable(
-            *fill(*moves[:3], units, moves.length, moves.cost, error, weight, states, horizon, width, keep)
-        )
+        table = WalkTable(*fill(moves, units, error, weight, horizon, width, keep))
         return cls(moves, units, quantum, 0.0 if free else weight, table)
 
     def ask(self, targets: Targets, effort: int = 10_000) -> Answer:
@@ -66,7 +64,7 @@ class PreparedSearch:
         """
         if np.isfinite(targets.distance) and targets.distance_weight > self.weight:
             raise ValueError("key frames: the table was filled for a lesser weight of distance: fill it anew")
-        steps, cell, cost, bound, possible = look_up(*self.table[1:], self.quantum, *_numbers(targets))
+        steps, cell, cost, bound, possible = look_up(self.table, self.quantum, _numbers(targets))
         if not possible:
             return Answer(None, True)
         walk = self._trace(steps, cell, targets) if steps >= 0 else None
@@ -81,11 +79,11 @@ class PreparedSearch:
 
     def nearest(self, targets: Targets) -> Walk | None:
         """The walk with least |d - d_V| / tolerance + |t - t_V| / tolerance; its bound is nan."""
-        steps, cell = nearest(*self.table[1:], self.quantum, *_numbers(targets))
+        steps, cell = nearest(self.table, self.quantum, _numbers(targets))
         return self._trace(steps, cell, targets) if steps >= 0 else None
 
     def _trace(self, steps: int, cell: int, targets: Targets) -> Walk:
-        edges = follow(*self.moves[:3], self.units, self.table.choice, steps, cell)
+        edges = follow(self.moves, self.units, self.table.choice, steps, cell)
         return self._walk(edges, targets)
 
     def _walk(self, edges: np.ndarray, targets: Targets) -> Walk:
@@ -97,15 +95,14 @@ class PreparedSearch:
     def _refined(self, targets: Targets, cost: float, effort: int) -> tuple[Walk | None, bool]:
         """A cheaper walk, if trying all walks of the promising cells meets one; whether all were tried."""
         edges, done = try_all(
-            *self.moves[:3], self.units, self.moves.length, self.moves.cost,
-            *self.table, self.quantum, *_numbers(targets), cost, effort,
-        )  # fmt: skip
+            self.moves, self.units, self.table, self.quantum, _numbers(targets), cost, effort
+        )
         return (self._walk(edges, targets) if len(edges) else None), bool(done)
 
 
-def _numbers(targets: Targets) -> tuple[float, ...]:
+def _numbers(targets: Targets) -> Targets:
     """One machine type, so that the loops are compiled once."""
-    return tuple(float(number) for number in targets)
+    return Targets(*(float(number) for number in targets))
 
 
 def _units(moves: Moves, quantum: float) -> np.ndarray:

@@ -7,6 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from reperform.nodes.kernels.walk_moves import Moves, Targets
+
 # no walk
 NONE = 255
 
@@ -32,24 +34,15 @@ class WalkTable(NamedTuple):
 
 @njit(cache=True, nogil=True)
 def fill(
-    first: np.ndarray,
-    following: np.ndarray,
-    steps: np.ndarray,
-    units: np.ndarray,
-    length: np.ndarray,
-    cost: np.ndarray,
-    error: np.ndarray,
-    weight: float,
-    states: int,
-    horizon: int,
-    width: int,
-    keep: int,
+    moves: Moves, units: np.ndarray, error: np.ndarray, weight: float, horizon: int, width: int, keep: int
 ) -> tuple[np.ndarray, ...]:
     """The columns of a `WalkTable`, for up to `horizon` steps and `width` cells; `keep`: longest move + 1.
 
     Every move but those of the start takes at least one step, so filling by steps, the start last, meets what
     it needs; costs and distances are kept for the last `keep` steps only.
     """
+    first, following, steps, length, cost = moves[:5]
+    states = len(first) - 1
     choice = np.empty((states, horizon + 1, width), np.uint8)
     low = np.full((states, horizon + 1), width, np.int32)
     high = np.full((states, horizon + 1), -1, np.int32)
@@ -60,7 +53,7 @@ def fill(
     for t in range(horizon + 1):
         for back in range(states):
             s = states - 1 - back
-            _band(first, following, steps, units, s, t, width, low, high)
+            _band(moves, units, s, t, width, low, high)
             if high[s, t] < 0:
                 continue
             a, b = low[s, t], high[s, t] + 1
@@ -102,17 +95,10 @@ def fill(
 
 @njit(cache=True, nogil=True)
 def _band(
-    first: np.ndarray,
-    following: np.ndarray,
-    steps: np.ndarray,
-    units: np.ndarray,
-    s: int,
-    t: int,
-    width: int,
-    low: np.ndarray,
-    high: np.ndarray,
+    moves: Moves, units: np.ndarray, s: int, t: int, width: int, low: np.ndarray, high: np.ndarray
 ) -> None:
     """The cells that the walks from s in t steps can have."""
+    first, following, steps = moves[:3]
     for e in range(first[s], first[s + 1]):
         rest, f = t - steps[e], following[e]
         if rest < 0 or (f < 0 and rest > 0):
@@ -177,24 +163,11 @@ def _rows(wanted: float, tolerance: float, count: int) -> tuple[int, int]:
 
 
 @njit(cache=True, nogil=True)
-def look_up(
-    low: np.ndarray,
-    high: np.ndarray,
-    least: np.ndarray,
-    slack: np.ndarray,
-    cost: np.ndarray,
-    distance: np.ndarray,
-    bound: np.ndarray,
-    quantum: float,
-    far: float,
-    late: float,
-    far_weight: float,
-    late_weight: float,
-    far_tolerance: float,
-    late_tolerance: float,
-) -> tuple[int, int, float, float, bool]:
+def look_up(table: WalkTable, quantum: float, targets: Targets) -> tuple[int, int, float, float, bool]:
     """(steps, cell) of the cheapest known walk within tolerances (-1 for none), its cost, a lower bound, and
     whether any walk may be within them."""
+    _, low, high, _, slack, cost, distance, bound = table
+    far, late, far_weight, late_weight, far_tolerance, late_tolerance = targets
     at, cell, best, under, possible = -1, -1, np.inf, np.inf, False
     first, last = _rows(late, late_tolerance, len(cost))
     for t in range(first, last + 1):
@@ -220,23 +193,10 @@ def look_up(
 
 
 @njit(cache=True, nogil=True)
-def nearest(
-    low: np.ndarray,
-    high: np.ndarray,
-    least: np.ndarray,
-    slack: np.ndarray,
-    cost: np.ndarray,
-    distance: np.ndarray,
-    bound: np.ndarray,
-    quantum: float,
-    far: float,
-    late: float,
-    far_weight: float,
-    late_weight: float,
-    far_tolerance: float,
-    late_tolerance: float,
-) -> tuple[int, int]:
+def nearest(table: WalkTable, quantum: float, targets: Targets) -> tuple[int, int]:
     """(steps, cell) of the known walk that misses least in units of the tolerances; -1 where there is none."""
+    _, low, high, _, slack, cost, distance, _ = table
+    far, late, _, _, far_tolerance, late_tolerance = targets
     at, cell, best = -1, -1, np.inf
     middle = 0 if np.isnan(late) else min(max(int(np.rint(late)), 0), len(cost) - 1)
     for ring in range(2 * len(cost)):
@@ -262,16 +222,9 @@ def nearest(
 
 
 @njit(cache=True, nogil=True)
-def follow(
-    first: np.ndarray,
-    following: np.ndarray,
-    steps: np.ndarray,
-    units: np.ndarray,
-    choice: np.ndarray,
-    t: int,
-    d: int,
-) -> np.ndarray:
+def follow(moves: Moves, units: np.ndarray, choice: np.ndarray, t: int, d: int) -> np.ndarray:
     """The moves of the cheapest walk of a cell of the start."""
+    first, following, steps = moves[:3]
     out = np.empty(2 * choice.shape[1] + 2, np.int64)
     count, s = 0, 0
     while s >= 0:
@@ -284,27 +237,11 @@ def follow(
 
 @njit(cache=True, nogil=True)
 def try_all(
-    first: np.ndarray,
-    following: np.ndarray,
-    steps: np.ndarray,
+    moves: Moves,
     units: np.ndarray,
-    length: np.ndarray,
-    cost: np.ndarray,
-    choice: np.ndarray,
-    low: np.ndarray,
-    high: np.ndarray,
-    least: np.ndarray,
-    slack: np.ndarray,
-    known: np.ndarray,
-    distance: np.ndarray,
-    bound: np.ndarray,
+    table: WalkTable,
     quantum: float,
-    far: float,
-    late: float,
-    far_weight: float,
-    late_weight: float,
-    far_tolerance: float,
-    late_tolerance: float,
+    targets: Targets,
     best: float,
     effort: int,
 ) -> tuple[np.ndarray, bool]:
@@ -312,6 +249,9 @@ def try_all(
 
     Depth first through every cell that the bounds do not rule out; false where `effort` moves did not do.
     """
+    first, following, steps, length, cost = moves[:5]
+    choice, low, high, least, slack, known, _, bound = table
+    far, late, far_weight, late_weight, far_tolerance, late_tolerance = targets
     depth = 2 * choice.shape[1] + 2
     move, states = np.empty(depth, np.int64), np.empty(depth, np.int64)
     rests, cells = np.empty(depth, np.int64), np.empty(depth, np.int64)

@@ -6,11 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from reperform.nodes.kernels.walk_moves import Moves, Spot, Targets, lay_out
+from reperform.nodes.kernels.path_frames import path_frames
+from reperform.nodes.kernels.walk_moves import Moves, Spot, Targets, Walk, lay_out
 from reperform.nodes.product import Dataset
 from reperform.nodes.products.mesh import MeshSequence
-from reperform.nodes.products.motion import MotionGraph
-from reperform.nodes.synthesis.graph_walk import ground_tracks, passages_of
+from reperform.nodes.products.motion import MotionGraph, MotionPath
+from reperform.nodes.synthesis.graph_walk import ground_tracks, motion_path, passages_of
 
 
 def moves_between(
@@ -69,4 +70,38 @@ def asked_targets(
         weights[1] / rate,
         tolerances[0],
         tolerances[1] * rate,
+    )
+
+
+def path_of(
+    graph: MotionGraph,
+    meshes: Dataset[MeshSequence],
+    spots: Sequence[Spot],
+    walk: Walk,
+    targets: Targets,
+    who: str,
+) -> MotionPath:
+    """The product of a walk between key frames, beside what was asked."""
+    passages, tracks = passages_of(graph), ground_tracks(graph, meshes, who)
+    frames = path_frames(spots[0].take, spots[0].frame, [passages[k] for k in walk.passages], spots[-1].frame)
+    return motion_path(
+        graph, frames, tracks, walk.passages,
+        distance=targets.distance, duration=(targets.steps + 1.0) / float(graph.fps),
+        cost=walk.cost, bound=walk.bound,
+    )  # fmt: skip
+
+
+def infeasible(
+    keys: Sequence[str], targets: Targets, walk: Walk | None, rate: float, proved: bool, who: str
+) -> str:
+    """What cannot be met, and the nearest that can."""
+    wanted = ((targets.distance, "m"), ((targets.steps + 1.0) / rate, "s"))
+    asked = " in ".join(f"{value:g} {unit}" for value, unit in wanted if not np.isnan(value))
+    none = "no walk" if proved else "no walk was found that"
+    text = f"{who}: {none} through {', '.join(keys)} covers {asked or 'anything'} within the tolerances"
+    if walk is None:
+        return f"{text}, nor any near it: ask for a longer duration"
+    return (
+        f"{text}; the nearest that can be met is {walk.distance:.3f} m in {(walk.steps + 1) / rate:.2f} s: "
+        f"ask for that, widen the tolerances, or set nearest: true"
     )

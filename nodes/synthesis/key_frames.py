@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Annotated
 
 import numpy as np
 
 from reperform.nodes.declaration import Param, node
-from reperform.nodes.kernels.path_frames import path_frames
 from reperform.nodes.kernels.prepared_search import PreparedSearch
 from reperform.nodes.kernels.walk_moves import Moves, Targets, Walk
 from reperform.nodes.product import Dataset
 from reperform.nodes.products.mesh import MeshSequence
 from reperform.nodes.products.motion import MotionGraph, MotionPath
-from reperform.nodes.synthesis.graph_walk import ground_tracks, motion_path, passages_of
-from reperform.nodes.synthesis.key_frame_targets import asked_targets, moves_between
+from reperform.nodes.synthesis.key_frame_targets import asked_targets, infeasible, moves_between, path_of
 
 _WHO = "synthesis.key_frames"
 # How far beyond the targets the nearest feasible one is looked for: factors of the horizon.
@@ -79,14 +76,8 @@ def key_frames(
     if walk is None:
         walk = _nearest(moves, asked, horizon, reach, rate)
         if walk is None or not nearest:
-            raise ValueError(_infeasible(keys, distance, duration, walk, rate, answer.proved))
-    passages, tracks = passages_of(graph), ground_tracks(graph, meshes, _WHO)
-    frames = path_frames(spots[0].take, spots[0].frame, [passages[k] for k in walk.passages], spots[-1].frame)
-    return motion_path(
-        graph, frames, tracks, walk.passages,
-        distance=asked.distance, duration=np.nan if duration is None else duration,
-        cost=walk.cost, bound=walk.bound,
-    )  # fmt: skip
+            raise ValueError(infeasible(keys, asked, walk, rate, answer.proved, _WHO))
+    return path_of(graph, meshes, spots, walk, asked, _WHO)
 
 
 def _nearest(moves: Moves, asked: Targets, horizon: int, reach: float, rate: float) -> Walk | None:
@@ -108,24 +99,3 @@ def _nearest(moves: Moves, asked: Targets, horizon: int, reach: float, rate: flo
             if error <= outside:
                 return walk
     return walk
-
-
-def _infeasible(
-    keys: Sequence[str],
-    distance: float | None,
-    duration: float | None,
-    walk: Walk | None,
-    rate: float,
-    proved: bool,
-) -> str:
-    asked = " in ".join(
-        f"{value:g} {unit}" for value, unit in ((distance, "m"), (duration, "s")) if value is not None
-    )
-    none = "no walk" if proved else "no walk was found that"
-    text = f"{_WHO}: {none} through {', '.join(keys)} covers {asked or 'anything'} within the tolerances"
-    if walk is None:
-        return f"{text}, nor any near it: ask for a longer duration"
-    return (
-        f"{text}; the nearest that can be met is {walk.distance:.3f} m in {(walk.steps + 1) / rate:.2f} s: "
-        f"ask for that, widen the tolerances, or set nearest: true"
-    )

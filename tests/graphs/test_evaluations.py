@@ -9,6 +9,15 @@ from reperform.graphs.pipeline import Pipeline, read_pipeline
 
 EVALUATIONS = sorted(path.stem for path in (SHIPPED / "evaluation").glob("*.yaml"))
 FIGURES = {
+    "keyframe_grid": {
+        "max_distance_error_m": ("<=", 0.05),
+        "max_time_error_s": ("<=", 0.08),
+        "infeasible_share": ("", None),
+        "ms_per_target": ("<=", 10.0),
+        "speedup_vs_ilp": (">=", 7.0),
+        "optimality_gap": ("<=", 0.0),
+        "smoothness_m": ("<=", 0.04),
+    },
     "quickstart": {
         "hull_volume_over_ideal": ("<=", 1.05),
         "surface_error_mm": ("<=", 12.0),

@@ -11,10 +11,12 @@ import pytest
 from reperform.nodes.product import product_fields
 from reperform.nodes.products.cameras import CameraPath, Cameras
 from reperform.nodes.products.footage import CleanPlate, Film, Footage, Mattes
+from reperform.nodes.products.key_frame_table import KeyFrameTable
 from reperform.nodes.products.mesh import MeshSequence, Occupancy, Surfaces, TextureAtlas
 from reperform.nodes.products.motion import Dissimilarity, MotionGraph, MotionPath, Provenance, ShapeTree
 from reperform.nodes.products.performance import Contacts, Performance, SkeletonSequence
 from reperform.nodes.products.table import Table
+from reperform.nodes.products.target_grid import TargetGrid
 from reperform.nodes.ragged import Ragged
 
 FPS = np.float32(25.0)
@@ -147,6 +149,33 @@ def cameras(count: int = 5) -> Cameras:
     )
 
 
+def target_grid() -> TargetGrid:
+    """One sequence, 4 x 6 targets: fast ones cannot be met, one is open, the others are missed a little."""
+    distance, duration = np.arange(1.0, 5.0), np.arange(1.0, 7.0)
+    status = np.where(distance[:, None] > 0.8 * duration, 0, 1).astype(np.int8)
+    status[3, 5] = -1
+    error = 0.01 * np.sin(np.arange(24).reshape(4, 6))
+    return filled(
+        TargetGrid,
+        {"transition": 2},
+        keys=np.array(["stand:0 > walk:8"]),
+        distance=distance,
+        duration=duration,
+        reached_distance=(distance[:, None] + error)[None],
+        reached_duration=(duration + error)[None],
+        cost=np.ones((1, 4, 6)),
+        bound=np.ones((1, 4, 6)),
+        status=status[None],
+        taken=np.zeros((1, 4, 6, 2), np.int16),
+    )
+
+
+def key_frame_table() -> KeyFrameTable:
+    """Two rows of made-up numbers."""
+    numbers = (np.array([0.001 * k, 0.0123 * k]) for k in range(1, len(KeyFrameTable._fields) - 1))
+    return KeyFrameTable(np.array(["skirt", "dress"]), np.array(["stand:0 > walk:8"] * 2), *numbers)
+
+
 def make_products() -> dict[str, Any]:
     """One small product of every kind by name."""
     mesh = sequence(12)
@@ -211,6 +240,8 @@ def make_products() -> dict[str, Any]:
             np.array(["004 fig 2.4", "000 table III", "", ""]),
         ),
         "contacts": Contacts(np.zeros((12, 2), bool)),
+        "target_grid": target_grid(),
+        "key_frame_table": key_frame_table(),
     }
 
 

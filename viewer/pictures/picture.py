@@ -31,6 +31,7 @@ from reperform.viewer.pictures.skeleton import (
 )
 from reperform.viewer.pictures.surface import poses_picture, surface_picture
 from reperform.viewer.pictures.tabulate import Cell, draw_table, statistics_picture, table_picture
+from reperform.viewer.pictures.target_grid import key_frame_table_picture, target_grid_picture
 
 Painter = Callable[[Any, int, Look], np.ndarray]
 
@@ -51,6 +52,8 @@ PAINTERS: dict[str, Painter] = {
     "Mocap": mocap_picture,
     "SkeletalAnimation": skeletal_animation_picture,
     "Table": table_picture,
+    "TargetGrid": target_grid_picture,
+    "KeyFrameTable": key_frame_table_picture,
 }
 
 

@@ -29,6 +29,8 @@ NAMES = [
     "tree",
     "table",
     "contacts",
+    "target_grid",
+    "key_frame_table",
 ]
 
 
@@ -95,3 +97,14 @@ def test_png_and_numbers() -> None:
         "–",
         "1.234e-05",
     ]
+
+
+def test_what_cannot_be_met_is_grey_and_what_is_open_is_marked(products: dict[str, Any]) -> None:
+    grid = products["target_grid"]
+    drawn = picture(grid, 0, Look(size=(900, 600))).astype(int)
+    grey = (abs(drawn - [201, 208, 214]).max(axis=-1) <= 2).sum()
+    red = (abs(drawn - [209, 73, 91]).max(axis=-1) <= 2).sum()
+    assert (np.asarray(grid.status) == 0).sum() == 10
+    assert (np.asarray(grid.status) == -1).sum() == 1
+    assert grey / 10 == pytest.approx(red, rel=0.35)
+    assert grey > 5000
