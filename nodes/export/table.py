@@ -13,7 +13,7 @@ from reperform.nodes.products.table import Table
 
 
 def write_csv(path: Path, table: Table | KeyFrameTable) -> None:
-    """One row per figure (or key-frame sequence), a header line first; numbers with all their digits, UTF-8; complete or absent."""
+    """One line per row, a header line first; numbers with all their digits, UTF-8; complete or absent."""
     columns = [np.asarray(column).tolist() for column in table]
     with beside(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
