@@ -45,6 +45,13 @@ def vertex_areas(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
     return np.asarray(gather @ face_areas(vertices, faces)) / 3.0
 
 
+def vertex_means(values: np.ndarray, faces: np.ndarray, count: int) -> np.ndarray:
+    """Mean (count, C) over the faces around each vertex of values at faces (F, C); 0 for a loose vertex."""
+    gather = _vertex_of_face_matrix(faces, count)
+    around = np.bincount(faces.ravel(), minlength=count)
+    return np.asarray(gather @ values) / np.maximum(around, 1)[:, None]
+
+
 def volume(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
     """Signed volume (...,) of closed meshes, in cubic metres: sum over faces of a . (b x c) / 6.
 

@@ -13,15 +13,15 @@ def earth_movers(supply: np.ndarray, demand: np.ndarray, cost: np.ndarray, above
 
         EMD = min over flows f >= 0 with sum_j f_ij = supply_i, sum_i f_ij = demand_j of sum_ij f_ij cost_ij
 
-    Transportation simplex on a spanning tree: starts from the greedy (north-west corner) flow in the order
-    given, so sets whose order is alike start near the end; the most negative reduced cost of a row enters.
+    Transportation simplex on a spanning tree: starts from a flow in which row after row goes to the cheapest
+    columns still open; the most negative reduced cost of a row enters, row after row.
     That a value is passed is proved by weak duality, EMD >= sum_j demand_j v_j + sum_i supply_i min_j (cost_ij - v_j).
 
     Source: Rubner, Tomasi and Guibas 2000, IJCV 40; Dantzig 1951; Cunningham 1976, Mathematical Programming 11
     (leaving arc).
     """
     rows, columns = cost.shape
-    parent, flow = _north_west(supply, demand)
+    parent, flow = _rooted(*_row_minimum(supply, demand, cost), rows)
     nodes = rows + columns
     child, following, before = _children(parent)
     potential, depth = np.zeros(nodes), np.zeros(nodes, np.int32)
@@ -85,30 +85,74 @@ def _bound(supply: np.ndarray, demand: np.ndarray, cost: np.ndarray, potential: 
 
 
 @njit(cache=True, nogil=True)
-def _north_west(supply: np.ndarray, demand: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The greedy flow as a spanning tree that hangs from row 0: parent of every node, flow to the parent."""
-    rows, columns = len(supply), len(demand)
-    parent, flow = np.full(rows + columns, -1, np.int32), np.zeros(rows + columns)
-    i, j = 0, 0
-    left, wanted = supply[0], demand[0]
-    from_row = True
-    while True:
-        moved = min(left, wanted)
-        if from_row:
-            parent[rows + j], flow[rows + j] = i, moved
-        else:
-            parent[i], flow[i] = rows + j, moved
-        if i == rows - 1 and j == columns - 1:
-            return parent, flow
-        # at the end of one side the rest of the other hangs from its last node, whatever rounding left
-        if j == columns - 1 or (i < rows - 1 and left <= wanted):
-            wanted = max(wanted - moved, 0.0)
-            i += 1
-            left, from_row = supply[i], False
-        else:
-            left = max(left - moved, 0.0)
-            j += 1
-            wanted, from_row = demand[j], True
+def _row_minimum(
+    supply: np.ndarray, demand: np.ndarray, cost: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """A flow in which row after row goes to the cheapest columns still open, as the arcs (row, column, flow) of a
+    spanning tree.
+    """
+    rows, columns = cost.shape
+    arcs = rows + columns - 1
+    row, column, flow = np.empty(arcs, np.int32), np.empty(arcs, np.int32), np.empty(arcs)
+    wanted = demand.copy()
+    # columns still open, the first `size` entries
+    open_columns = np.arange(columns)
+    size, found = columns, 0
+    for i in range(rows):
+        left = supply[i]
+        while True:
+            best, at = np.inf, 0
+            for n in range(size):
+                if cost[i, open_columns[n]] < best:
+                    best, at = cost[i, open_columns[n]], n
+            j = open_columns[at]
+            moved = min(left, wanted[j])
+            row[found], column[found], flow[found] = i, j, moved
+            found += 1
+            # the last row takes all that is left, the last column is never closed before it, whatever rounding says
+            if i == rows - 1 or (size > 1 and wanted[j] < left):
+                left = max(left - moved, 0.0)
+                size -= 1
+                open_columns[at] = open_columns[size]
+                if size == 0:
+                    break
+            else:
+                wanted[j] = max(wanted[j] - moved, 0.0)
+                break
+    return row, column, flow
+
+
+@njit(cache=True, nogil=True)
+def _rooted(
+    row: np.ndarray, column: np.ndarray, along: np.ndarray, rows: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """The tree of these arcs hung from row 0: parent of every node, flow to the parent."""
+    nodes = len(row) + 1
+    count = np.zeros(nodes + 1, np.int32)
+    for e in range(len(row)):
+        count[row[e] + 1] += 1
+        count[rows + column[e] + 1] += 1
+    start = np.cumsum(count)
+    ends = start[:-1].copy()
+    arc = np.empty(2 * len(row), np.int32)
+    for e in range(len(row)):
+        for side in range(2):
+            node = rows + column[e] if side else np.int64(row[e])
+            arc[ends[node]] = e
+            ends[node] += 1
+    parent, flow = np.full(nodes, -1, np.int32), np.zeros(nodes)
+    queue = np.empty(nodes, np.int32)
+    queue[0], tail = 0, 1
+    for head in range(nodes):
+        node = queue[head]
+        for n in range(start[node], start[node + 1]):
+            e = arc[n]
+            other = rows + column[e] if node < rows else row[e]
+            if other != parent[node]:
+                parent[other], flow[other] = node, along[e]
+                queue[tail] = other
+                tail += 1
+    return parent, flow
 
 
 @njit(cache=True, nogil=True)
