@@ -6,6 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from reperform.nodes.kernels.path_mean import path_mean
+
 
 def path_contacts(
     take: np.ndarray, frame: np.ndarray, weight: np.ndarray, planted: Sequence[np.ndarray], share: float = 1.0
@@ -14,10 +16,4 @@ def path_contacts(
 
     take, frame, weight (F, 2): provenance of each played frame, takes by number; planted: per take (T, K).
     """
-    feet = planted[0].shape[1]
-    out = np.zeros((len(take), feet))
-    for number, rests in enumerate(planted):
-        for side in range(take.shape[1]):
-            rows = np.flatnonzero((take[:, side] == number) & (weight[:, side] > 0.0))
-            out[rows] += weight[rows, side, None] * rests[frame[rows, side]]
-    return np.asarray(out >= share - 1e-4)
+    return np.asarray(path_mean(take, frame, weight, planted) >= share - 1e-4)

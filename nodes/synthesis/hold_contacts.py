@@ -12,8 +12,7 @@ from reperform.nodes.product import Dataset
 from reperform.nodes.products.mesh import MeshSequence
 from reperform.nodes.products.motion import Animation
 from reperform.nodes.synthesis.contact_parameters import Ease, Height, Share, Speed
-
-_WHO = "synthesis.hold_contacts"
+from reperform.nodes.synthesis.source_takes import source_takes
 
 
 @node(over="dataset", memory=1.0)
@@ -39,29 +38,15 @@ def hold_contacts(
     Departure: on the surface, without a skeleton.
     """
     mesh, origin = animation.mesh, animation.provenance
-    faces = np.asarray(mesh.faces)
-    takes = [str(take) for take in np.asarray(origin.takes)]
-    for k in np.unique(np.asarray(origin.take)).tolist():
-        if takes[k] not in meshes:
-            raise ValueError(f"{_WHO}: the motion plays {takes[k]!r}; the meshes have {', '.join(meshes)}")
-    for name, take in meshes.items():
-        if not np.array_equal(np.asarray(take.faces), faces):
-            raise ValueError(
-                f"{_WHO}: take {name!r} must have the topology of the motion: wire the same meshes"
-            )
-    names = list(meshes)
-    captured = [np.asarray(meshes[name].vertices) for name in names]
-    found = foot_contacts(captured, faces, float(mesh.fps), height, speed)
+    faces, fps = np.asarray(mesh.faces), float(mesh.fps)
+    takes, number = source_takes(animation, meshes, "synthesis.hold_contacts")
+    captured = [np.asarray(take.vertices) for take in takes]
+    found = foot_contacts(captured, faces, fps, height, speed)
     if found.foot.max() < 0:
         return animation
-    number = np.array([names.index(take) if take in meshes else -1 for take in takes])
     planted = path_contacts(
-        number[np.asarray(origin.take)],
-        np.asarray(origin.source_frame),
-        np.asarray(origin.weight),
-        found.planted,
-        share,
+        number, np.asarray(origin.source_frame), np.asarray(origin.weight), found.planted, share
     )
     fields = leg_fields(captured[0][0], faces, found.foot)
-    held = hold_feet(np.asarray(mesh.vertices), found.foot, planted, fields, float(mesh.fps), ease)
+    held = hold_feet(np.asarray(mesh.vertices), found.foot, planted, fields, fps, ease)
     return Animation(mesh._replace(vertices=held), origin)
