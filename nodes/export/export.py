@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from reperform.nodes.export.acclaim import write_acclaim
 from reperform.nodes.export.bvh import write_bvh
 from reperform.nodes.export.gltf import write_sequence_glb, write_surfaces_glb
 from reperform.nodes.export.mesh_text import write_obj, write_ply
@@ -43,8 +44,8 @@ def endings(kind: type) -> tuple[str, ...]:
         Animation: MESHES,
         Performance: (*MESHES, ".bvh"),
         SkeletonSequence: (".bvh",),
-        Mocap: (".bvh",),
-        SkeletalAnimation: (".bvh",),
+        Mocap: (".bvh", ".amc"),
+        SkeletalAnimation: (".bvh", ".amc"),
         Table: (".csv",),
         KeyFrameTable: (".csv",),
     }
@@ -56,7 +57,7 @@ def write(product: Any, path: Path | str, name: str = "", picture: Picture | Non
 
     Films and footage: .mp4 (all cameras side by side), .png (one picture, or a sheet of up to 16 frames).
     Meshes: .glb and .usd hold all frames; .obj and .ply one mesh per file: for several frames the name must
-    have a place for the frame, as `mesh_%04d.obj` (.png takes that too). Skeletons .bvh, tables .csv,
+    have a place for the frame, as `mesh_%04d.obj` (.png takes that too). Skeletons .bvh, or .amc with an .asf, tables .csv,
     matrices .png, anything .npz. Fields may be lazy: frames are read one at a time. name: of the object
     inside .glb and .usd. picture: draws other products as RGB uint8 for .png.
 
@@ -75,6 +76,8 @@ def write(product: Any, path: Path | str, name: str = "", picture: Picture | Non
         write_csv(path, product)
     elif ending == ".bvh":
         write_bvh(path, _moving_skeleton(product))
+    elif ending == ".amc":
+        write_acclaim(path, product.mocap if isinstance(product, SkeletalAnimation) else product)
     elif ending in MESHES:
         _write_meshes(product, path, ending, name or path.stem)
     elif ending == ".mp4":

@@ -9,6 +9,11 @@ from reperform.graphs.pipeline import Pipeline, read_pipeline
 
 EVALUATIONS = sorted(path.stem for path in (SHIPPED / "evaluation").glob("*.yaml"))
 FIGURES = {
+    "joins": {
+        "contact_speed_m_s": ("<=", 0.05),
+        "volume_change": ("<=", 0.01),
+        "join_acceleration_ratio": ("<=", 1.0),
+    },
     "keyframe_grid": {
         "max_distance_error_m": ("<=", 0.05),
         "max_time_error_s": ("<=", 0.08),
