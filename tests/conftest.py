@@ -8,6 +8,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 _NUMBERS = itertools.count()
@@ -106,3 +107,51 @@ def new_plug_in() -> Callable[[Path, str], PlugIn]:
 def new_command() -> Callable[..., Command]:
     """Makes the command line run in a folder."""
     return Command
+
+
+# -- a character to direct: the virtual actor on few vertices, who walks and jumps -------------------------------
+
+
+def playable_takes() -> tuple[dict, dict]:
+    """Four walks by speed and turning, two jumps by height: meshes and contacts."""
+    from scipy.spatial import cKDTree
+
+    from reperform.nodes.kernels.decimate import decimate
+    from reperform.nodes.products.mesh import MeshSequence
+    from reperform.nodes.studio.perform import perform
+
+    plans = {
+        f"walk_{speed}_{side}": {"motion": f"turn_{side}", "walk_speed": speed, "turn": 0.8, "seconds": 2.6}
+        for speed in (0.8, 1.6)
+        for side in ("left", "right")
+    }
+    plans |= {f"jump_{h}": {"motion": "jump_high", "height": h, "seconds": 1.5} for h in (0.15, 0.4)}
+    meshes, contacts, kept, faces = {}, {}, None, None
+    for name, plan in plans.items():
+        made = perform(costume="jacket", **plan)
+        if kept is None:
+            points, faces = decimate(made.mesh.vertices[0], made.mesh.faces, 700)
+            kept = cKDTree(made.mesh.vertices[0]).query(points)[1]
+        meshes[name] = MeshSequence(np.ascontiguousarray(made.mesh.vertices[:, kept]), faces, made.mesh.fps)
+        contacts[name] = made.contacts
+    return meshes, contacts
+
+
+@pytest.fixture(scope="session")
+def playable() -> tuple:
+    """The graph walk <-> jump, and its spaces."""
+    from reperform.nodes.motion_graph.parametric import parametric
+    from reperform.nodes.motion_graph.space import space
+
+    meshes, contacts = playable_takes()
+    names = list(meshes)
+    spaces = {
+        "walk": space(
+            meshes, contacts, takes=tuple(names[:4]), parameters=("speed", "turning"), blend="linear"
+        ),
+        "jump": space(
+            meshes, contacts, takes=tuple(names[4:]), parameters=("height",), cyclic=False, blend="linear"
+        ),
+    }
+    edges = ("walk>jump", "jump>walk")
+    return parametric(spaces, edges=edges, blend="linear", subdivisions=1), spaces

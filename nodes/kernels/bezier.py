@@ -116,13 +116,13 @@ def through(points: np.ndarray) -> np.ndarray:
     return controls
 
 
-def track_error(curve: GroundCurve, track: np.ndarray) -> np.ndarray:
-    """Distance of ground positions (T, 2) to a curve, (T,), m: to its polyline of samples."""
-    a, b = curve.point[:-1], curve.point[1:]
+def polyline_distance(points: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Distance (T,) of ground places (T, 2) to the polyline through points (N, 2), N > 1, m."""
+    a, b = points[:-1], points[1:]
     along = b - a
     square = np.maximum((along * along).sum(1), 1e-18)
-    out = np.empty(len(track))
-    for k, place in enumerate(np.asarray(track, np.float64)):
+    out = np.empty(len(places))
+    for k, place in enumerate(np.asarray(places, np.float64)):
         share = np.clip(((place - a) * along).sum(1) / square, 0, 1)
         out[k] = np.sqrt(((a + share[:, None] * along - place) ** 2).sum(1).min())
     return out

@@ -123,7 +123,7 @@ def _graph(
     spread = [
         np.stack([squared_distances(pose, pose) for pose in references.features]) for references in made
     ]
-    cyclic = [bool(spaces[name].cyclic) for name in names]
+    cyclic = [bool(np.asarray(spaces[name].cyclic)) for name in names]
     chosen = [_fixed(table, fixed, cyclic[i], cyclic[j]) for (i, j), table in tables.items()]
     costs = [
         table[poses[:, 0], rows[:, 0], poses[:, 1], rows[:, 1]] / largest

@@ -2,7 +2,13 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from reperform.nodes.kernels.bezier import bezier_points, bezier_velocity, curve_of, through, track_error
+from reperform.nodes.kernels.bezier import (
+    bezier_points,
+    bezier_velocity,
+    curve_of,
+    polyline_distance,
+    through,
+)
 
 CONTROLS = np.array([[0.3, -1], [1.5, 0.2], [-2, 1.4], [0.4, 3], [2.8, 4.6], [3, 2], [5.2, 2.5]])
 
@@ -48,7 +54,9 @@ def test_a_smooth_chain_passes_through_its_points_without_a_kink():
 
 def test_distance_to_a_curve():
     curve = curve_of(np.array([[0, 0], [1, 0], [2, 0], [3, 0]]), 0.1)
-    np.testing.assert_allclose(track_error(curve, np.array([[1.03, 0.2], [4, 0]])), [0.2, 1.0], atol=1e-9)
+    np.testing.assert_allclose(
+        polyline_distance(curve.point, np.array([[1.03, 0.2], [4, 0]])), [0.2, 1.0], atol=1e-9
+    )
 
 
 @pytest.mark.parametrize("controls", [np.zeros((4, 2)), np.zeros((5, 2)), np.full((4, 2), np.nan)])

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from reperform.nodes.kernels.bezier import curve_of, through, track_error
+from reperform.nodes.kernels.bezier import curve_of, polyline_distance, through
 from reperform.nodes.kernels.path_follow import Follower
 
 LIMITS = np.array([0.6, 1.6, 1.3, 1.5])
@@ -24,7 +24,7 @@ def test_three_turns_are_followed_closely_to_the_end():
     curve = curve_of(through(np.array([[0, 0], [1, 3], [-1.5, 5], [1, 8], [0, 11.0]])))
     track, left = walk(curve, 0.0, 0.0, float(np.arctan2(*curve.tangent[0])))
     assert left <= 0.05
-    assert track_error(curve, track[:, :2]).max() < 0.05
+    assert polyline_distance(curve.point, track[:, :2]).max() < 0.05
     assert np.abs(track[:, 3]).max() <= LIMITS[2]
     assert LIMITS[0] <= track[:, 2].min() and track[:, 2].max() <= LIMITS[1]
 
@@ -40,4 +40,4 @@ def test_a_point_to_its_left_makes_it_turn_left():
     _, turn, _ = Follower(curve, LIMITS).command(-0.5, 1.0, 0.0, 1.2)
     assert turn > 0.2
     track, _ = walk(curve, -0.5, 0.0, -0.4)
-    assert track_error(curve, track[-100:, :2]).max() < 0.02
+    assert polyline_distance(curve.point, track[-100:, :2]).max() < 0.02
