@@ -169,5 +169,5 @@ def _references(space: ParametricSpace, level: int, velocity_weight: float) -> R
     fields = (space.vertices, space.motion, space.seconds, space.faces, space.cells)
     vertices, motion, seconds, faces, cells = (np.asarray(field) for field in fields)
     return reference_motions(
-        vertices, motion, seconds, bool(space.cyclic), faces, cells, level, velocity_weight, True
+        vertices, motion, seconds, bool(np.asarray(space.cyclic)), faces, cells, level, velocity_weight, True
     )

@@ -99,5 +99,28 @@ def _smooth(middle: np.ndarray, first: float, last: float) -> np.ndarray:
     out = straight.copy()
     out[inner] = np.linalg.solve(matrix[inner, inner], middle[inner] - known)
     out = np.clip(isotonic_regression(out).x, first, last)
+    out = (1 - _STRAIGHT) * out + _STRAIGHT * straight
     out[0], out[-1] = first, last
-    return np.asarray((1 - _STRAIGHT) * out + _STRAIGHT * straight)
+    return np.asarray(out)
+
+
+@njit(cache=True, nogil=True)
+def warped_distance(distance: np.ndarray) -> float:
+    """Mean dissimilarity of a take (n frames) from the part of another that follows it best: (n, m) matrix.
+
+    The other take is run through in a circle from any frame, at half to twice the pace:
+    D(i, j) = min(D(i-1, j-1) + d, D(i-1, j-2) + d, D(i-2, j-1) + 2 d), d = d(i, j), free at both ends.
+
+    Source: Müller 2007, Information Retrieval for Music and Motion, section 4.4 (subsequence time warping).
+    """
+    n, m = distance.shape
+    total = np.empty((n, m))
+    total[0] = distance[0]
+    for i in range(1, n):
+        for j in range(m):
+            d = distance[i, j]
+            best = min(total[i - 1, j - 1], total[i - 1, j - 2]) + d
+            if i > 1:
+                best = min(best, total[i - 2, j - 1] + 2.0 * d)
+            total[i, j] = best
+    return total[n - 1].min() / n

@@ -31,7 +31,7 @@ def nonlinear_states(
             made[key] = ready[pose].at(weight)
         return made[key]
 
-    cyclic, length = bool(space.cyclic), vertices.shape[1]
+    cyclic, length = bool(np.asarray(space.cyclic)), vertices.shape[1]
     out = []
     for pose, weight in zip(poses.tolist(), weights, strict=True):
         starts = not cyclic and pose == 0

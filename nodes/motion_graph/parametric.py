@@ -42,7 +42,7 @@ def parametric(
     latency_weight: Annotated[
         float,
         Param("1", 0.0, 1000.0, "lambda: thousandths of the largest dissimilarity that 1/25 s is worth"),
-    ] = 0.4,
+    ] = 0.45,
     depth: Annotated[int, Param("1", 1, 20, "steps of the trellis")] = 10,
     step: Annotated[
         float, Param("1", 0.01, 1.0, "of the trellis, as a share of a run and of a control's range")
