@@ -48,3 +48,14 @@ class PoseGraph(NamedTuple):
     predecessor: Annotated[np.ndarray, Axes("pose", "pose", dtype="int32")]
     alpha: Annotated[np.ndarray, Axes(dtype="float64", unit="1/frame")]
     fps: Annotated[np.ndarray, Axes(dtype="float32", unit="Hz")]
+
+
+class PathCosts(NamedTuple):
+    """Costs of best paths between pairs of poses in two graphs, one panel per database."""
+
+    panel: Annotated[np.ndarray, Axes("panel", dtype="str")]
+    alpha: Annotated[np.ndarray, Axes("panel", dtype="float64", unit="1/frame")]
+    # pairs of poses that the curves stand for
+    pairs: Annotated[np.ndarray, Axes("panel", dtype="int32")]
+    # columns: the baseline's costs in order, the essential graph's of the same pairs, and those in order
+    cost: Annotated[np.ndarray, Axes("panel", "sample", "3")]

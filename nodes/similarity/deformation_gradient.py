@@ -15,6 +15,7 @@ from reperform.nodes.kernels.face_clusters import (
     cluster_poses,
 )
 from reperform.nodes.kernels.mesh_geometry import vertex_areas
+from reperform.nodes.kernels.one_topology import require_one_topology
 from reperform.nodes.product import Pair
 from reperform.nodes.products.mesh import MeshSequence
 from reperform.nodes.products.motion import Dissimilarity
@@ -55,9 +56,7 @@ def deformation_gradient(
     d(i, j) = d(j, i).
     """
     a, b = mesh
-    if not np.array_equal(a.faces, b.faces) or a.vertices.shape[1] != b.vertices.shape[1]:
-        counts = f"{a.vertices.shape[1]} and {b.vertices.shape[1]} vertices"
-        raise ValueError(f"{_WHO}: both takes must share one topology, got {counts}: align them first")
+    require_one_topology(_WHO, (a.faces, b.faces), (a.vertices.shape[1], b.vertices.shape[1]))
     faces = np.asarray(a.faces)
     firsts = [np.asarray(take.vertices[0]) for take in mesh]
     try:

@@ -15,6 +15,7 @@ from reperform.viewer.pictures.matrix import matrix_picture
 from reperform.viewer.pictures.motion_graph import motion_graph_picture
 from reperform.viewer.pictures.motion_path import motion_path_picture
 from reperform.viewer.pictures.occupancy import occupancy_picture
+from reperform.viewer.pictures.path_costs import path_costs_picture
 from reperform.viewer.pictures.photographs import (
     film_picture,
     film_strip,
@@ -22,6 +23,7 @@ from reperform.viewer.pictures.photographs import (
     mattes_picture,
     plate_picture,
 )
+from reperform.viewer.pictures.pose_graph import pose_graph_picture, pose_transitions_picture
 from reperform.viewer.pictures.rig import camera_path_picture, cameras_picture
 from reperform.viewer.pictures.shape_tree import shape_tree_picture
 from reperform.viewer.pictures.skeleton import (
@@ -48,6 +50,9 @@ PAINTERS: dict[str, Painter] = {
     "MotionGraph": motion_graph_picture,
     "ShapeTree": shape_tree_picture,
     "MotionPath": motion_path_picture,
+    "PathCosts": path_costs_picture,
+    "PoseGraph": pose_graph_picture,
+    "PoseTransitions": pose_transitions_picture,
     "SkeletonSequence": skeleton_picture,
     "Mocap": mocap_picture,
     "SkeletalAnimation": skeletal_animation_picture,
