@@ -13,12 +13,12 @@ from collections import deque
 from collections.abc import Sequence
 from typing import Any
 
-from reperform.graphs.errors import RunError
 from reperform.graphs.keys import output_key
 from reperform.graphs.listener import Progress, Silent
+from reperform.graphs.mending import Mending
 from reperform.graphs.pace import Pace, Room
 from reperform.graphs.pipeline import Pipeline
-from reperform.graphs.report import RunReport, failure, step_reports
+from reperform.graphs.report import RunReport, failure, refuse_failures, step_reports
 from reperform.graphs.resolve import Resolver
 from reperform.graphs.unit import Name, Unit, Work, batch_of
 from reperform.storage.errors import DamagedResult, StoreError
@@ -56,8 +56,7 @@ class Engine:
         self._waiting: dict[Name, Unit] = {}
         self._tag = 0
         self._pace = Pace(store.index)
-        # units whose results lie in a segment that was found damaged
-        self._broken: dict[str, set[Name]] = {}
+        self._mending = Mending(store, self.units)
         self._store_error: str | None = None
         self._left: dict[str, set[Name]] = {name: set() for name in self.chosen}
         self.notes: list[str] = []
@@ -109,10 +108,7 @@ class Engine:
         self._remember()
         if self._store_error:
             raise StoreError(errno.EIO, self._store_error)
-        failures = [error for unit in self.units.values() for error in unit.errors]
-        if failures:
-            more = [f"... and {len(failures) - 20} more failures"] if len(failures) > 20 else []
-            raise RunError("\n".join(failures[:20] + more), report)
+        refuse_failures(self.units.values(), report)
         return report
 
     def _resolve(self, unit: Unit) -> None:
@@ -361,22 +357,8 @@ class Engine:
 
     def _mend(self, unit: Unit, segment: str, rows: Any, reason: str) -> None:
         """An input turned out damaged: forget it, make it again, then come back to this unit."""
-        known = self._broken.setdefault(segment, set())
-        if segment.startswith("manifests/"):
-            found = [
-                u for u in self.units.values() if any(segment.endswith(m.name) for m in u.manifests.values())
-            ]
-            self.store.index.drop_manifests([m.key for u in found for m in u.manifests.values()])
-            self._note([f"damaged manifest {segment}: {reason}; it is made again"])
-        else:
-            found = [u for u in self.units.values() if segment in self._segments(u)]
-            self._note([f"{self.store.forget(segment, rows)} ({reason})"])
-            # one look at all that the input names, so that one unit is not sent back for every chunk of a bad disk
-            for other in sorted({name for u in found for name in self._segments(u)} - {segment}):
-                broken = self.store.damaged_rows(other)
-                if broken != []:
-                    self._note([self.store.forget(other, broken)])
-        known |= {u.name for u in found}
+        known, notes = self._mending.forget(segment, rows, reason)
+        self._note(notes)
         unit.mended += 1
         if unit.mended > 5 or not known:
             self._fail(
@@ -391,13 +373,6 @@ class Engine:
             if source.status == "done":
                 source.status, source.mended = "waiting", source.mended + 1
                 self._ready.append(source)
-
-    def _segments(self, unit: Unit) -> set[str]:
-        return {
-            name
-            for manifest in unit.manifests.values()
-            for name in self.store.index.segments_of(manifest.key)
-        }
 
     def _close(self, unit: Unit) -> None:
         """A unit is done, failed or skipped; with its last one the step is over."""

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from reperform.graphs.errors import RunError
 from reperform.graphs.messages import Item, ItemOutcome
 from reperform.graphs.unit import Name, Unit
 
@@ -72,3 +73,11 @@ def failure(unit: Unit, item: Item, outcome: ItemOutcome, resume: str) -> str:
         f"{where} failed: {outcome.error}\n"
         f"  finished items are kept; rerun only what is missing with: {resume} {unit.step.name}{trace}"
     )
+
+
+def refuse_failures(units: Iterable[Unit], report: RunReport) -> None:
+    """Raise RunError with the first twenty failures, where there are any."""
+    failures = [error for unit in units for error in unit.errors]
+    if failures:
+        more = [f"... and {len(failures) - 20} more failures"] if len(failures) > 20 else []
+        raise RunError("\n".join(failures[:20] + more), report)

@@ -34,7 +34,7 @@ def write_mp4(path: Path, images: Iterable[np.ndarray], fps: float, *, crf: int 
                 stream.codec_context.thread_count = 1
                 stream.options = {
                     "crf": str(crf),
-                    "preset": "medium",
+                    "preset": "veryfast",
                     "x264-params": "threads=1:lookahead-threads=1:sliced-threads=0",
                 }
             elif picture.shape[:2] != size:
