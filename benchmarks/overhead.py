@@ -73,7 +73,12 @@ def run_reperform(case: str, folder: Path, items: int) -> float:
 
     needed = ["reperform.graphs.api", "reperform.viewer.progress"]
     if case != "no-op":
-        needed += ["dask.threaded", "zarr", "reperform.graphs.complete", "reperform.graphs.executor"]
+        needed += [
+            "dask.threaded",
+            "reperform.storage.chunk_folder",
+            "reperform.graphs.complete",
+            "reperform.graphs.executor",
+        ]
         needed += ["reperform.graphs.item_keys", "reperform.storage.segment", "overhead_nodes"]
     for module in needed:
         importlib.import_module(module)
