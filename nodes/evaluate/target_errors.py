@@ -31,8 +31,9 @@ def target_errors(grid: TargetGrid, smoothness: Measures) -> Measures:
         )
     status = np.asarray(grid.status)
     met = status == 1
-    far = abs(np.asarray(grid.reached_distance) - np.asarray(grid.distance)[None, :, None])
-    late = abs(np.asarray(grid.reached_duration) - np.asarray(grid.duration)[None, None])
+    # a nanometre and a nanosecond are the arithmetic's
+    far = abs(np.asarray(grid.reached_distance) - np.asarray(grid.distance)[None, :, None]).round(9)
+    late = abs(np.asarray(grid.reached_duration) - np.asarray(grid.duration)[None, None]).round(9)
     with np.errstate(divide="ignore", invalid="ignore"):
         shares = far / np.asarray(grid.distance)[None, :, None], late / np.asarray(grid.duration)[None, None]
     worst = np.where(taken > 0, rough, -np.inf).max(axis=-1, initial=-np.inf)

@@ -12,6 +12,7 @@ from reperform.nodes.export.acclaim import write_acclaim
 from reperform.nodes.export.bvh import write_bvh
 from reperform.nodes.export.gltf import write_sequence_glb, write_surfaces_glb
 from reperform.nodes.export.mesh_text import write_obj, write_ply
+from reperform.nodes.export.motion_graph import write_motion_graph
 from reperform.nodes.export.npz import write_npz
 from reperform.nodes.export.png import heat, tile, write_png
 from reperform.nodes.export.table import write_csv
@@ -21,7 +22,7 @@ from reperform.nodes.products.footage import CleanPlate, Film, Footage, Mattes
 from reperform.nodes.products.key_frame_table import KeyFrameTable
 from reperform.nodes.products.mesh import MeshSequence, Surfaces, TextureAtlas
 from reperform.nodes.products.mocap import Mocap, SkeletalAnimation
-from reperform.nodes.products.motion import Animation, Dissimilarity
+from reperform.nodes.products.motion import Animation, Dissimilarity, MotionGraph
 from reperform.nodes.products.performance import Performance, SkeletonSequence
 from reperform.nodes.products.table import Table
 
@@ -48,6 +49,7 @@ def endings(kind: type) -> tuple[str, ...]:
         SkeletalAnimation: (".bvh", ".amc"),
         Table: (".csv",),
         KeyFrameTable: (".csv",),
+        MotionGraph: (".json", ".graphml"),
     }
     return (*table.get(kind, ()), ".npz")
 
@@ -58,6 +60,7 @@ def write(product: Any, path: Path | str, name: str = "", picture: Picture | Non
     Films and footage: .mp4 (all cameras side by side), .png (one picture, or a sheet of up to 16 frames).
     Meshes: .glb and .usd hold all frames; .obj and .ply one mesh per file: for several frames the name must
     have a place for the frame, as `mesh_%04d.obj` (.png takes that too). Skeletons .bvh, or .amc with an .asf, tables .csv,
+    motion graphs .json and .graphml,
     matrices .png, anything .npz. Fields may be lazy: frames are read one at a time. name: of the object
     inside .glb and .usd. picture: draws other products as RGB uint8 for .png.
 
@@ -74,6 +77,8 @@ def write(product: Any, path: Path | str, name: str = "", picture: Picture | Non
         write_npz(path, product)
     elif ending == ".csv":
         write_csv(path, product)
+    elif ending in (".json", ".graphml"):
+        write_motion_graph(path, product)
     elif ending == ".bvh":
         write_bvh(path, _moving_skeleton(product))
     elif ending == ".amc":

@@ -38,6 +38,18 @@ def strong_part(
     return best
 
 
+def around(after: np.ndarray, core: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Which transitions (T,) bool some walk of the core reaches, and from which one comes to the core.
+
+    after: (T, T) whether transition j can follow transition i; core: (T,).
+    """
+    reached, returns = core.copy(), core.copy()
+    for _ in range(len(core)):
+        reached |= after[reached].any(axis=0)
+        returns |= after[:, returns].any(axis=1)
+    return reached, returns
+
+
 def _frames_played(
     chosen: np.ndarray, source: np.ndarray, target: np.ndarray, departure: np.ndarray, arrival: np.ndarray
 ) -> int:

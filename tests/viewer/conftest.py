@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from reperform.nodes.motion_graph.prune import prune
 from reperform.nodes.product import product_fields
 from reperform.nodes.products.cameras import CameraPath, Cameras
 from reperform.nodes.products.footage import CleanPlate, Film, Footage, Mattes
@@ -242,6 +243,7 @@ def make_products() -> dict[str, Any]:
         "contacts": Contacts(np.zeros((12, 2), bool)),
         "target_grid": target_grid(),
         "key_frame_table": key_frame_table(),
+        "pruned": prune(graph()),
     }
 
 

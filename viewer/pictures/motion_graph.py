@@ -110,7 +110,10 @@ def _draw_graph(axis: Any, product: MotionGraph, takes: list[str]) -> None:
         ylim=(middle[1] - reach[1], middle[1] + reach[1]),
         aspect="equal",
     )
-    axis.set_title(f"{len(takes)} takes, {len(edges)} edges, {len(product.source)} transitions", loc="left")
+    outside = int((~np.asarray(product.core)).sum())
+    dashed = f", {outside} of them (dashed) outside the core" if outside else ""
+    title = f"{len(takes)} takes, {len(edges)} edges, {len(product.source)} transitions"
+    axis.set_title(title + dashed, loc="left", fontsize=10)
     axis.axis("off")
 
 

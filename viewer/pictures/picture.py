@@ -24,6 +24,7 @@ from reperform.viewer.pictures.photographs import (
     plate_picture,
 )
 from reperform.viewer.pictures.pose_graph import pose_graph_picture, pose_transitions_picture
+from reperform.viewer.pictures.pruning_report import pruned_graph_picture, pruning_report_picture
 from reperform.viewer.pictures.rig import camera_path_picture, cameras_picture
 from reperform.viewer.pictures.shape_tree import shape_tree_picture
 from reperform.viewer.pictures.skeleton import (
@@ -57,6 +58,8 @@ PAINTERS: dict[str, Painter] = {
     "Mocap": mocap_picture,
     "SkeletalAnimation": skeletal_animation_picture,
     "Table": table_picture,
+    "PrunedGraph": pruned_graph_picture,
+    "PruningReport": pruning_report_picture,
     "TargetGrid": target_grid_picture,
     "KeyFrameTable": key_frame_table_picture,
 }

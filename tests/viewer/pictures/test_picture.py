@@ -31,6 +31,7 @@ NAMES = [
     "contacts",
     "target_grid",
     "key_frame_table",
+    "pruned",
 ]
 
 
