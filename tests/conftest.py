@@ -11,6 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from reperform.nodes.products.parametric import ParametricSpace
+
 _NUMBERS = itertools.count()
 
 
@@ -155,3 +157,28 @@ def playable() -> tuple:
     }
     edges = ("walk>jump", "jump>walk")
     return parametric(spaces, edges=edges, blend="linear", subdivisions=1), spaces
+
+
+@pytest.fixture(scope="session")
+def circling() -> Callable[[int, float, float], ParametricSpace]:
+    """Makes a space of two inputs whose top goes round once in some poses, one of them higher, from an angle on."""
+    faces = np.array([[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]], np.int32)
+    rest = np.array([[0.1, 0, 0], [0.5, 0.2, 0], [0, 1.1, 0.3], [-0.2, 0.3, 0.4]])
+
+    def space(poses: int, shift: float, seconds: float) -> ParametricSpace:
+        """Two inputs whose top goes round once in `poses`, one of them higher; they meet the other space at one pose."""
+        angle = 2 * np.pi * (np.arange(poses) / poses + shift)
+        vertices = np.repeat(rest[None, None], 2, axis=0).repeat(poses, axis=1)
+        vertices[:, :, 2, 0] += 0.3 * np.cos(angle)
+        vertices[:, :, 2, 2] += 0.3 * np.sin(angle)
+        vertices[1, :, 2, 1] += 0.2
+        two = np.array([[0.0], [1.0]])
+        return ParametricSpace(
+            np.array(["low", "high"]), vertices.astype(np.float32), np.zeros((2, poses, 3)), np.full((2, poses), seconds / poses),
+            np.zeros((2, poses, 2), bool), np.zeros((2, poses)), np.asarray(True), np.array(["height"]), np.array(["m"]),
+            two * 0.2, two, np.array([[0, 1]], np.int32), np.eye(2), two * 0.2, np.zeros(1), np.full(1, 0.2),
+            np.array([2], np.int32), two, np.zeros((1, 2)), np.array([-1, -1], np.int32), np.asarray(False), faces,
+            np.asarray(25, np.float32),
+        )  # fmt: skip
+
+    return space

@@ -15,6 +15,8 @@ from reperform.viewer.pictures.matrix import matrix_picture
 from reperform.viewer.pictures.motion_graph import motion_graph_picture
 from reperform.viewer.pictures.motion_path import motion_path_picture
 from reperform.viewer.pictures.occupancy import occupancy_picture
+from reperform.viewer.pictures.parametric_graph import parametric_graph_picture, space_suggestion_picture
+from reperform.viewer.pictures.parametric_space import parametric_space_picture, time_warp_picture
 from reperform.viewer.pictures.path_costs import path_costs_picture
 from reperform.viewer.pictures.photographs import (
     film_picture,
@@ -49,6 +51,10 @@ PAINTERS: dict[str, Painter] = {
     "CameraPath": camera_path_picture,
     "Dissimilarity": matrix_picture,
     "MotionGraph": motion_graph_picture,
+    "ParametricSpace": parametric_space_picture,
+    "ParametricGraph": parametric_graph_picture,
+    "SpaceSuggestion": space_suggestion_picture,
+    "TimeWarp": time_warp_picture,
     "ShapeTree": shape_tree_picture,
     "MotionPath": motion_path_picture,
     "PathCosts": path_costs_picture,
