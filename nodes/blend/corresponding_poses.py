@@ -2,11 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from reperform.nodes.blend.pair_frames import Pace, lay_on, pose_at
 from reperform.nodes.product import Dataset
 from reperform.nodes.products.mesh import MeshSequence
+
+
+def chosen_takes(meshes: Dataset[MeshSequence], takes: Sequence[str], who: str) -> dict[str, MeshSequence]:
+    """The takes named, in that order; all where none is named. Raises ValueError where one is not there."""
+    missing = [take for take in takes if take not in meshes]
+    if missing:
+        raise ValueError(f"{who}: no take {missing[0]!r}; there are {', '.join(meshes)}")
+    return {take: meshes[take] for take in takes or meshes}
 
 
 def corresponding_poses(meshes: Dataset[MeshSequence], pace: Pace, place: bool, who: str) -> np.ndarray:

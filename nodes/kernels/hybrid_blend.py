@@ -13,7 +13,7 @@ class HybridFields(NamedTuple):
 
     The weights' simplex is halved again and again: simplex s has the correction `split[s]` at the middle of one
     edge and the two halves child[s], child[s] + 1; split is -1 where it is whole. Correction k of pose t is worth
-    step[k, t] code, on the runs start[k T + t] .. start[k T + t + 1] of vertices; elsewhere it is nothing.
+    step[k, t] code, on the runs start[k T + t] .. start[k T + t + 1] of coordinates; elsewhere it is nothing.
     """
 
     # (N, T, 3 V) float32, m
@@ -21,7 +21,7 @@ class HybridFields(NamedTuple):
     split: np.ndarray
     child: np.ndarray
     start: np.ndarray
-    # per run: its first vertex, and where its codes start, three per vertex; one entry more at the end
+    # per run: its first coordinate (3 v + axis), and where its codes start; one entry more at the end
     first: np.ndarray
     begin: np.ndarray
     # int8 or int16
@@ -55,6 +55,29 @@ def evaluate(
 
 
 @njit(cache=True, nogil=True)
+def evaluate_mix(
+    fields: HybridFields,
+    before: int,
+    after: int,
+    part: float,
+    weights: np.ndarray,
+    out: np.ndarray,
+    scratch: np.ndarray,
+) -> None:
+    """As `evaluate`, between two poses: 1 - part of `before` and part of `after` (the first pose of a cycle, say)."""
+    flat = out.reshape(-1)
+    if part == 0.0 or part == 1.0:
+        pose = after if part == 1.0 else before
+        _linear(fields.inputs, pose, weights, 1.0, False, flat)
+        _correct(fields, pose, weights, 1.0, flat, scratch)
+        return
+    _linear(fields.inputs, before, weights, 1.0 - part, False, flat)
+    _linear(fields.inputs, after, weights, part, True, flat)
+    _correct(fields, before, weights, 1.0 - part, flat, scratch)
+    _correct(fields, after, weights, part, flat, scratch)
+
+
+@njit(cache=True, nogil=True)
 def evaluate_between(
     fields: HybridFields, time: float, weights: np.ndarray, out: np.ndarray, scratch: np.ndarray
 ) -> None:
@@ -62,17 +85,7 @@ def evaluate_between(
     last = fields.inputs.shape[1] - 1
     time = min(max(time, 0.0), float(last))
     before = min(int(time), max(last - 1, 0))
-    part = time - before
-    flat = out.reshape(-1)
-    if part == 0.0 or part == 1.0:
-        pose = before + int(part)
-        _linear(fields.inputs, pose, weights, 1.0, False, flat)
-        _correct(fields, pose, weights, 1.0, flat, scratch)
-        return
-    _linear(fields.inputs, before, weights, 1.0 - part, False, flat)
-    _linear(fields.inputs, before + 1, weights, part, True, flat)
-    _correct(fields, before, weights, 1.0 - part, flat, scratch)
-    _correct(fields, before + 1, weights, part, flat, scratch)
+    evaluate_mix(fields, before, min(before + 1, last), time - before, weights, out, scratch)
 
 
 @njit(cache=True, nogil=True)
@@ -119,36 +132,34 @@ def _linear(
     inputs: np.ndarray, pose: int, weights: np.ndarray, share: float, add: bool, flat: np.ndarray
 ) -> None:
     """flat (+)= share * sum_i w_i inputs[i, pose], two inputs at a time; those of weight 0 are not read."""
-    count = len(weights)
-    i, fresh = 0, not add
-    while i < count:
-        while i < count and weights[i] == 0.0:
-            i += 1
-        j = i + 1
-        while j < count and weights[j] == 0.0:
-            j += 1
-        if i >= count:
-            break
-        one = np.float32(share * weights[i])
-        x = inputs[i, pose]
-        if j >= count:
-            if fresh:
-                for v in range(len(flat)):
-                    flat[v] = one * x[v]
-            else:
-                for v in range(len(flat)):
-                    flat[v] += one * x[v]
-        else:
-            two = np.float32(share * weights[j])
-            y = inputs[j, pose]
+    i, fresh = _used(weights, 0), not add
+    while i < len(weights):
+        j = _used(weights, i + 1)
+        one, x = np.float32(share * weights[i]), inputs[i, pose]
+        if j < len(weights):
+            two, y = np.float32(share * weights[j]), inputs[j, pose]
             if fresh:
                 for v in range(len(flat)):
                     flat[v] = one * x[v] + two * y[v]
             else:
                 for v in range(len(flat)):
                     flat[v] += one * x[v] + two * y[v]
+        elif fresh:
+            for v in range(len(flat)):
+                flat[v] = one * x[v]
+        else:
+            for v in range(len(flat)):
+                flat[v] += one * x[v]
         fresh = False
-        i = j + 1
+        i = _used(weights, j + 1)
+
+
+@njit(cache=True, nogil=True)
+def _used(weights: np.ndarray, i: int) -> int:
+    """The first input from i on whose weight is not 0."""
+    while i < len(weights) and weights[i] == 0.0:
+        i += 1
+    return i
 
 
 @njit(cache=True, nogil=True)
@@ -156,20 +167,22 @@ def _correct(
     fields: HybridFields, pose: int, weights: np.ndarray, share: float, flat: np.ndarray, scratch: np.ndarray
 ) -> None:
     """flat += share * sum_k h_k(w) d_k of one pose."""
+    first, begin, code = fields.first, fields.begin, fields.code
     scratch[:] = weights
     n = len(scratch) - 1
-    poses = fields.inputs.shape[1]
     simplex, depth = 0, 0
     while fields.split[simplex] >= 0:
         k = n - depth % n
         low = min(scratch[0], scratch[k])
         if low > 0.0:
             node = fields.split[simplex]
+            row = node * fields.inputs.shape[1] + pose
             scale = np.float32(2.0 * low * share * fields.step[node, pose])
-            for run in range(fields.start[node * poses + pose], fields.start[node * poses + pose + 1]):
-                code = fields.code[fields.begin[run] : fields.begin[run + 1]]
-                part = flat[3 * fields.first[run] : 3 * fields.first[run] + len(code)]
-                for v in range(len(code)):
-                    part[v] += scale * np.float32(code[v])
+            for run in range(fields.start[row], fields.start[row + 1]):
+                # unsigned, so that the loop is known not to count from the end and is vectorised
+                start = np.uint64(first[run])
+                shift = np.uint64(begin[run]) - start
+                for v in range(start, np.uint64(begin[run + 1]) - shift):
+                    flat[v] += scale * np.float32(code[v + shift])
         simplex = fields.child[simplex] + _halve(scratch, k)
         depth += 1

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -12,10 +12,17 @@ from reperform.nodes.kernels.hybrid_blend import HybridFields, hat_values, linea
 from reperform.nodes.kernels.mesh_blend import MeshBlender, PoseSet
 from reperform.nodes.kernels.weight_bisection import WeightBisection
 
-# Gaps of as many vertices between two runs are stored too: cheaper than a new run, in bytes and in time.
-_GAP = 4
-# What a run costs besides its codes: first vertex and where the codes start.
+# Runs begin and end at multiples of this many coordinates: compiled loops then have no slow remainders.
+_LANES = 32
+# Errors up to this many epsilons are small enough: where nothing is longer than epsilon, nothing can be mended.
+_SLACK = 1.1
+# Rounding to codes may err by this many epsilons.
+_ROUNDING = 0.1
+# What a run costs besides its codes: first coordinate and where the codes start.
 _RUN_BYTES = 8
+
+
+Codes = Literal["auto", "int8", "int16"]
 
 
 class Hybrid(NamedTuple):
@@ -43,15 +50,16 @@ def build_hybrid(
     epsilon: float,
     levels: int,
     deepest: int,
-    dtype: type = np.int16,
+    codes: Codes = "auto",
 ) -> Hybrid:
     """Correct linear blending towards `exact`.
 
     inputs: (N, T, V, 3) float32, N >= 2, m; exact: weights (N,) to (T, V, 3). A correction is stored where it
-    is longer than epsilon (m), in codes of dtype. levels: how often all weights are halved; 0: where and
-    until the largest distance to `exact` is under epsilon, at most `deepest` times.
+    is longer than epsilon (m); codes are int8 where that rounds by less than a tenth of epsilon, else int16
+    (auto). levels: how often all weights are halved; 0: where and
+    until the largest distance to `exact` is about epsilon (1.1 of it at most), not more than `deepest` times.
     """
-    builder = _Builder(inputs, exact, epsilon, dtype)
+    builder = _Builder(inputs, exact, epsilon, codes)
     builder.refine(levels or deepest, always=levels > 0)
     return builder.finished()
 
@@ -60,12 +68,17 @@ class _Builder:
     """Grows the bisection and the corrections."""
 
     def __init__(
-        self, inputs: np.ndarray, exact: Callable[[np.ndarray], np.ndarray], epsilon: float, dtype: type
+        self, inputs: np.ndarray, exact: Callable[[np.ndarray], np.ndarray], epsilon: float, codes: Codes
     ) -> None:
         self.inputs = np.ascontiguousarray(inputs, np.float32)
-        self.exact, self.epsilon, self.dtype = exact, epsilon, np.dtype(dtype)
-        self.tree = WeightBisection(len(inputs))
+        self.exact, self.epsilon = exact, epsilon
         self.known: dict[bytes, np.ndarray] = {}
+        if codes == "auto":
+            middle = np.full(len(inputs), 1.0 / len(inputs))
+            left = np.abs(self._exact(middle) - np.einsum("n,ntvk->tvk", middle, self.inputs)).max()
+            codes = "int8" if left / np.iinfo(np.int8).max / 2.0 <= _ROUNDING * epsilon else "int16"
+        self.dtype = np.dtype(codes)
+        self.tree = WeightBisection(len(inputs))
         self.stored: list[np.ndarray] = []
         self.parts: list[_Coded] = []
 
@@ -78,7 +91,7 @@ class _Builder:
             if not waiting:
                 return
             simplex = min(waiting, key=lambda s: (self.tree.depth[s], s))
-            if always or self._error(simplex) > self.epsilon:
+            if always or self._error(simplex) > _SLACK * self.epsilon:
                 self._cut(simplex)
                 sound.clear()
             else:
@@ -139,7 +152,7 @@ class _Builder:
 
 
 class _Coded(NamedTuple):
-    """One correction of all poses: runs (first vertex, vertices) of each pose, codes, and metres per code."""
+    """One correction of all poses: runs (first coordinate, length) of each pose, codes, and metres per code."""
 
     runs: list[np.ndarray]
     code: list[np.ndarray]
@@ -152,39 +165,41 @@ def _code(field: np.ndarray, epsilon: float, dtype: np.dtype) -> _Coded:
     largest = np.iinfo(dtype).max
     for pose, part in enumerate(field):
         found = _runs(np.einsum("vk,vk->v", part, part) > epsilon * epsilon)
-        kept = np.concatenate([part[a : a + n] for a, n in found]) if len(found) else part[:0]
+        flat = part.ravel()
+        kept = np.concatenate([flat[:0], *(flat[a : a + n] for a, n in found)])
         steps[pose] = np.abs(kept).max(initial=0.0) / largest
         code = np.rint(kept / steps[pose]) if steps[pose] > 0.0 else np.zeros_like(kept)
         runs.append(found)
-        codes.append(np.clip(code, -largest, largest).astype(dtype).ravel())
+        codes.append(np.clip(code, -largest, largest).astype(dtype))
     return _Coded(runs, codes, steps)
 
 
 @njit(cache=True, nogil=True)
 def _runs(chosen: np.ndarray) -> np.ndarray:
-    """Runs (first, length) that hold all chosen entries, with gaps of up to _GAP entries."""
-    out = np.empty((len(chosen) // 2 + 1, 2), np.int32)
-    count, last = 0, -_GAP - 2
+    """Runs (first, length) of coordinates that hold all chosen vertices."""
+    out = np.empty((len(chosen) + 1, 2), np.int32)
+    count, start, end = 0, 0, -1
     for v in range(len(chosen)):
         if not chosen[v]:
             continue
-        if v - last > _GAP + 1:
-            out[count, 0] = v
+        begin = 3 * v // _LANES * _LANES
+        if begin > end:
+            start = begin
             count += 1
-        out[count - 1, 1] = v + 1 - out[count - 1, 0]
-        last = v
+        end = max(end, (3 * v + 2 + _LANES) // _LANES * _LANES)
+        out[count - 1, 0], out[count - 1, 1] = start, min(end, 3 * len(chosen)) - start
     return out[:count]
 
 
 def _decode(coded: _Coded, shape: tuple[int, ...]) -> np.ndarray:
-    field = np.zeros(shape, np.float32)
+    field = np.zeros((shape[0], shape[1] * shape[2]), np.float32)
     for pose, (runs, code) in enumerate(zip(coded.runs, coded.code, strict=True)):
-        values = (coded.step[pose] * code.astype(np.float32)).reshape(-1, 3)
+        values = coded.step[pose] * code.astype(np.float32)
         at = 0
         for first, length in runs.tolist():
             field[pose, first : first + length] = values[at : at + length]
             at += length
-    return field
+    return field.reshape(shape)
 
 
 def _packed(
@@ -200,7 +215,7 @@ def _packed(
         child=np.array(tree.child, np.int32),
         start=np.concatenate([[0], np.cumsum([len(rows) for rows in runs])]).astype(np.int64),
         first=np.ascontiguousarray(table[:, 0]),
-        begin=np.concatenate([[0], 3 * np.cumsum(table[:, 1])]).astype(np.int32),
+        begin=np.concatenate([[0], np.cumsum(table[:, 1])]).astype(np.int32),
         code=np.concatenate(codes) if codes else np.zeros(0, dtype),
         step=np.array([coded.step for coded in parts], np.float32).reshape(-1, poses),
     )

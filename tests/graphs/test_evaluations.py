@@ -9,6 +9,20 @@ from reperform.graphs.pipeline import Pipeline, read_pipeline
 
 EVALUATIONS = sorted(path.stem for path in (SHIPPED / "evaluation").glob("*.yaml"))
 FIGURES = {
+    "blending": {
+        "jump_pair_r1_pct": ("<=", 1.3),
+        "jump_pair_r3_pct": ("<=", 0.9),
+        "far_pair_r1_pct": ("<=", 5.0),
+        "far_pair_r3_pct": ("<=", 1.3),
+        "volume_error": ("<=", 0.005),
+        "endpoint_error_m": ("<=", 1e-6),
+        "nonlinear_ms_3k": ("<=", 3.0),
+        "nonlinear_ms_5600": ("<=", 8.0),
+        "arap_over_nonlinear": (">=", 7.0),
+        "hybrid_ms_3k": ("<=", 0.2),
+        "hybrid_over_linear": ("<=", 1.5),
+        "memory_ratio_at_5mm": ("<=", 0.33),
+    },
     "joins": {
         "contact_speed_m_s": ("<=", 0.05),
         "volume_change": ("<=", 0.01),

@@ -10,6 +10,12 @@ import numpy as np
 
 from reperform.nodes.product import is_product
 from reperform.viewer.contents import frame_count, has_mesh, one_topology, summary
+from reperform.viewer.pictures.blends import (
+    blend_errors_picture,
+    blend_space_picture,
+    blend_table_picture,
+    threshold_curves_picture,
+)
 from reperform.viewer.pictures.look import Look
 from reperform.viewer.pictures.matrix import matrix_picture
 from reperform.viewer.pictures.motion_graph import motion_graph_picture
@@ -68,6 +74,10 @@ PAINTERS: dict[str, Painter] = {
     "PruningReport": pruning_report_picture,
     "TargetGrid": target_grid_picture,
     "KeyFrameTable": key_frame_table_picture,
+    "BlendSpace": blend_space_picture,
+    "BlendErrors": blend_errors_picture,
+    "BlendTable": blend_table_picture,
+    "ThresholdCurves": threshold_curves_picture,
 }
 
 

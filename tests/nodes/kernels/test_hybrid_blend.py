@@ -80,8 +80,8 @@ def test_linear_is_the_weighted_mean(inputs):
 
 def test_codes_err_by_half_a_step(inputs):
     exact = _curved(inputs)
-    for dtype, bits in ((np.int8, 7), (np.int16, 15)):
-        built = build_hybrid(inputs, exact, 0.0, 1, 1, dtype)
+    for codes, bits in (("int8", 7), ("int16", 15)):
+        built = build_hybrid(inputs, exact, 0.0, 1, 1, codes)
         step = float(built.fields.step.max())
         assert step < 1.0 / 2**bits
         error = max(np.abs(_at(built.fields, w) - exact(w)[1]).max() for w in built.weights)
