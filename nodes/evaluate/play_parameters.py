@@ -84,8 +84,12 @@ def _once(character: Character, command: Command, reach: np.ndarray) -> Callable
         if k + 1 == reach[1]:
             hand = character.vertices[reach[0]].astype(float)
     ground = rotate_ground(hand[[0, 2]] - start[:2], -start[2])
+    chord, turned = float(np.linalg.norm(character.root[:2] - start[:2])), float(character.root[2] - start[2])
+    seconds = float(pace[:-1].sum())
     return {
+        "speed": chord / float(np.sinc(turned / (2 * np.pi))) / seconds,
+        "turning": turned / seconds,
         "height": max(rise) - rise[0],
-        "length": float(np.linalg.norm(character.root[:2] - start[:2])),
+        "length": chord,
         "reach_x": float(ground[0]), "reach_y": float(hand[1]), "reach_z": float(ground[1]),
     }.__getitem__  # fmt: skip
