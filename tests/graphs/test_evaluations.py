@@ -56,6 +56,16 @@ FIGURES = {
         "utrecht_frames": (">=", 200.0),
         "samba_join_acceleration_ratio": ("<=", 1.0),
     },
+    "runtime": {
+        "hz_median": (">=", 200.0),
+        "frame_p99_ms": ("<=", 10.0),
+        "latency_max_s": ("<=", 1.2),
+        "dead_states": ("<=", 0.0),
+        "crowd10_hz": (">=", 25.0),
+        "parameter_error": ("<=", 0.02),
+        "contact_speed_m_s": ("<=", 0.05),
+        "path_max_error_m": ("<=", 0.15),
+    },
     "transition_latency": {
         "search_ms_depth10": ("<=", 0.1),
         "online_latency_over_precomputed": ("<=", 0.6),
