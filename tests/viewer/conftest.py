@@ -14,6 +14,7 @@ from reperform.nodes.products.cameras import CameraPath, Cameras
 from reperform.nodes.products.footage import CleanPlate, Film, Footage, Mattes
 from reperform.nodes.products.key_frame_table import KeyFrameTable
 from reperform.nodes.products.mesh import MeshSequence, Occupancy, Surfaces, TextureAtlas
+from reperform.nodes.products.mocap import Mocap, SkeletalAnimation
 from reperform.nodes.products.motion import Dissimilarity, MotionGraph, MotionPath, Provenance, ShapeTree
 from reperform.nodes.products.performance import Contacts, Performance, SkeletonSequence
 from reperform.nodes.products.table import Table
@@ -198,6 +199,7 @@ def make_products() -> dict[str, Any]:
         np.array(["hips", "chest", "hand_l", "RightHand", "lfoot", "foot_r"]),
         FPS,
     )
+    mocap = Mocap(skeleton, np.tile(np.eye(3, dtype=np.float32), (12, 6, 1, 1)), joints.astype(np.float32))
     small = blob((0.2, 0.5, 0.3), 8, 10)
     field = np.zeros((12, 20, 9), np.float32)
     field[2:9, 1:17, 2:6] = 0.9
@@ -216,6 +218,8 @@ def make_products() -> dict[str, Any]:
         "mesh": mesh,
         "performance": Performance(mesh, atlas, skeleton, Contacts(np.zeros((12, 2), bool))),
         "skeleton": skeleton,
+        "mocap": mocap,
+        "skeletal_animation": SkeletalAnimation(mocap, path().provenance),
         "cameras": cameras(),
         "orbit": CameraPath(eye.matrix, eye.rotation, eye.translation, np.int32([160, 90])),
         "matrix": matrix(24, 30),

@@ -8,6 +8,7 @@ from reperform.nodes.products.motion import MotionPath
 from reperform.viewer.pictures import Look, View, matrices_picture, overview, picture, png
 from reperform.viewer.pictures.motion_path import ground_track
 from reperform.viewer.pictures.scene import sample_atlas
+from reperform.viewer.pictures.skeleton import skeleton_bodies
 from reperform.viewer.pictures.tabulate import number
 
 LOOK = Look(size=(360, 240))
@@ -21,6 +22,8 @@ NAMES = [
     "mesh",
     "performance",
     "skeleton",
+    "mocap",
+    "skeletal_animation",
     "cameras",
     "orbit",
     "matrix",
@@ -72,6 +75,18 @@ def test_atlas_sampling_by_hand() -> None:
     image = np.array([[[0, 0, 0], [255, 0, 0]], [[0, 255, 0], [0, 0, 255]]], np.uint8)
     uv = np.array([[0.25, 0.25], [0.75, 0.25], [0.25, 0.75], [0.75, 0.75]])
     assert np.allclose(sample_atlas(image, uv), [[0, 1, 0], [0, 0, 1], [0, 0, 0], [1, 0, 0]], atol=0.01)
+
+
+def test_sides_are_told_by_twins_too(products: dict[str, Any]) -> None:
+    drawn = picture(products["mocap"], 0, LOOK)
+    assert np.array_equal(drawn, picture(products["skeleton"], 0, LOOK))
+    names = np.array(["lowerback", "head", "lwrist", "rwrist", "LThumb", "RThumb"])
+    bodies = skeleton_bodies(products["skeleton"]._replace(names=names), 0)
+    assert len({tuple(body.colour) for body in bodies}) == 3
+    left, _, middle = bodies
+    assert len(left.vertices) > len(middle.vertices) / 2
+    renamed = skeleton_bodies(products["skeleton"]._replace(names=np.array(list("abcdef"))), 0)
+    assert len(renamed) == 1
 
 
 def test_ground_track_by_hand(products: dict[str, Any]) -> None:
