@@ -18,13 +18,16 @@ def with_volume(vertices: np.ndarray, faces: np.ndarray, wanted: float) -> np.nd
     A surface that has the volume within 1e-5 of it comes back as it is.
     """
     points = vertices.astype(np.float64)
+    error = wanted - float(volume(points, faces))
+    if abs(error) <= _EXACT * abs(wanted):
+        return vertices
     normals = vertex_normals(points, faces)
     for _ in range(4):
-        error = wanted - float(volume(points, faces))
-        if abs(error) <= _EXACT * abs(wanted):
-            break
         # the gradient of the volume at a vertex is a sixth of the cross products of its faces
         cross = face_cross(points, faces)
         slope = float((cross * normals[faces].sum(axis=1)).sum()) / 6.0
         points = points + error / slope * normals
+        error = wanted - float(volume(points, faces))
+        if abs(error) <= _EXACT * abs(wanted):
+            break
     return points.astype(vertices.dtype)
