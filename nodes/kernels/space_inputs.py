@@ -15,6 +15,8 @@ from reperform.nodes.kernels.time_warp import continuous_warp, shortest_warp
 
 # vertices on which poses are compared
 _SAMPLE = 400
+# moments of a cycle at which takes are compared to find where they are in phase
+_PHASES = 12
 
 
 class SpaceInputs(NamedTuple):
@@ -35,6 +37,8 @@ class _Piece(NamedTuple):
     # in frames; cyclic: the cycle, else from the first to the last frame
     length: float
     events: list[tuple[float, str]]
+    # whether it starts at a given moment: a foot coming down or the first key
+    marked: bool
 
 
 def bring_into_step(
@@ -50,14 +54,20 @@ def bring_into_step(
 ) -> SpaceInputs:
     """Poses (input, pose, V, 3) in the root's frame and what goes with them, all takes in step.
 
-    takes: (T, V, 3) each, m; planted: (T, 2) each; reference: the pose (V, 3) that faces +z; keys: (takes, K) s.
+    takes: (T, V, 3) each, m; planted: (T, 2) each; reference: the pose (V, 3) that faces +z; keys: (takes, K) s. Cycles
+    begin at the first key, else where the left foot comes down, else in phase with the first take.
     Raises ValueError where a take does not repeat itself, or key frames lie outside the part that is used.
     """
     local = [to_root(take, reference) for take in takes]
-    pieces = []
+    pieces: list[_Piece] = []
     for row, (name, (points, _, _)) in enumerate(zip(names, local, strict=True)):
         events = [] if planted is None else contact_events(planted[row])
-        pieces.append(_piece(name, points, events, fps, cyclic, who))
+        starts = [t for t, what in events if what == "left down"] if keys is None else [keys[row, 0] * fps]
+        sample = points[:, :: max(1, points.shape[1] // _SAMPLE)]
+        if cyclic:
+            pieces.append(_cycle(name, sample, events, np.array(starts), fps, pieces[:1], who))
+        else:
+            pieces.append(_Piece(sample, 0.0, len(points) - 1.0, events, True))
     times = _times_in_step(pieces, names, fps, cyclic, poses, keys, who)
     rows = [_resampled(*local[i], times[i], cyclic) for i in range(len(takes))]
     vertices, motion = (np.stack(column) for column in zip(*rows, strict=True))
@@ -76,24 +86,34 @@ def bring_into_step(
     return SpaceInputs(vertices.astype(np.float32), motion, seconds, held, shown)
 
 
-def _piece(
-    name: str, points: np.ndarray, events: list[tuple[float, str]], fps: float, cyclic: bool, who: str
-) -> _Piece:
-    sample = points[:, :: max(1, points.shape[1] // _SAMPLE)]
-    if not cyclic:
-        return _Piece(sample, 0.0, len(points) - 1.0, events)
-    starts = np.array([t for t, what in events if what == "left down"])
-    first = np.array([0.0]) if len(starts) == 0 or starts[0] > 0.5 * fps else starts
+def _cycle(
+    name: str, sample: np.ndarray, events: list[tuple[float, str]], starts: np.ndarray, fps: float, like: list[_Piece],
+    who: str,
+) -> _Piece:  # fmt: skip
+    """One cycle of a take: from a start, else in phase with the first take (`like`)."""
     distance = ground_plane_distance(sample, sample, sample, sample, 0.0, "none")
-    cycle = find_cycle(distance, fps, starts if len(starts) else first[:0])
+    cycle = find_cycle(distance, fps, starts)
     if cycle is None:
         raise ValueError(
-            f"{who}: take {name} must repeat itself within its {len(points) / fps:.2f} s to be cyclic, and does not: "
+            f"{who}: take {name} must repeat itself within its {len(sample) / fps:.2f} s to be cyclic, and does not: "
             "use a longer take, or cyclic: false"
         )
     start, length = cycle
+    marked = bool((starts == start).any())
+    if like and not (marked and like[0].marked):
+        start = _in_phase(like[0], sample, length)
     inside = [(t - start, what) for t, what in events if 0.25 <= t - start <= length - 0.25]
-    return _Piece(sample, start, length, inside)
+    return _Piece(sample, start, length, inside, marked)
+
+
+def _in_phase(like: _Piece, sample: np.ndarray, length: float) -> float:
+    """The frame at which a cycle must begin to be most like another, phase by phase."""
+    share = np.arange(_PHASES) / _PHASES
+    wanted = at_times(like.points, like.start + like.length * share)
+    distance = ground_plane_distance(wanted, sample, wanted, sample, 0.0, "none")
+    starts = np.arange(int(len(sample) - 1 - length) + 1)
+    shown = np.round(starts[:, None] + length * share).astype(int)
+    return float(starts[int(np.argmin(distance[np.arange(_PHASES), shown].mean(axis=1)))])
 
 
 def _times_in_step(

@@ -44,7 +44,9 @@ def space(
     ] = 0,
     keys: Annotated[
         tuple[str, ...],
-        Param(about="key frames that must coincide: TAKE SECONDS SECONDS .., as many for every take"),
+        Param(
+            about="key frames that must coincide: TAKE SECONDS SECONDS .., as many per take; a cycle begins at the first"
+        ),
     ] = (),
     inverse: Annotated[Method, Param(about="how parameters are turned into weights")] = "monotone",
     outside: Annotated[

@@ -100,6 +100,31 @@ def test_a_reach_is_measured_at_the_marked_vertex(takes):
     assert made.value[:, 0] == pytest.approx(made.vertices[:, pose, vertex, 1])
 
 
+def test_without_contacts_cycles_are_in_phase_all_the_same(takes):
+    meshes, contacts = takes
+    names = ("slow", "fast", "left", "right")
+    told, found = space(meshes, contacts, takes=names, parameters=("speed", "turning")), space(
+        meshes, takes=names, parameters=("speed", "turning")
+    )  # fmt: skip
+    # swing of the top against the bottom says where in the cycle a pose is
+    swing = [
+        made.vertices[..., 36:42, 2].mean(axis=-1) - made.vertices[..., :6, 2].mean(axis=-1)
+        for made in (told, found)
+    ]
+    for made in swing:
+        spectrum = np.fft.fft(made, axis=1)[:, 1]
+        turn = np.angle(spectrum / spectrum[0])
+        assert np.abs(turn).max() < 0.25
+    assert np.abs(told.value - found.value).max() < 0.01
+
+
+def test_a_cycle_begins_at_the_first_key(takes):
+    meshes, _ = takes
+    keys = ("slow 0.2 0.7", "fast 0.4 0.8")
+    made = space(meshes, takes=("slow", "fast"), keys=keys)
+    assert made.source_frame[:, 0] == pytest.approx([5, 10])
+
+
 def test_given_key_frames_coincide(takes):
     meshes, _ = takes
     made = space(
