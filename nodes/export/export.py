@@ -18,6 +18,7 @@ from reperform.nodes.export.png import heat, tile, write_png
 from reperform.nodes.export.table import write_csv
 from reperform.nodes.export.usd import write_usd
 from reperform.nodes.export.video import write_mp4
+from reperform.nodes.products.essential import PoseGraph
 from reperform.nodes.products.footage import CleanPlate, Film, Footage, Mattes
 from reperform.nodes.products.key_frame_table import KeyFrameTable
 from reperform.nodes.products.mesh import MeshSequence, Surfaces, TextureAtlas
@@ -50,6 +51,7 @@ def endings(kind: type) -> tuple[str, ...]:
         Table: (".csv",),
         KeyFrameTable: (".csv",),
         MotionGraph: (".json", ".graphml"),
+        PoseGraph: (".json", ".graphml"),
     }
     return (*table.get(kind, ()), ".npz")
 
@@ -60,7 +62,7 @@ def write(product: Any, path: Path | str, name: str = "", picture: Picture | Non
     Films and footage: .mp4 (all cameras side by side), .png (one picture, or a sheet of up to 16 frames).
     Meshes: .glb and .usd hold all frames; .obj and .ply one mesh per file: for several frames the name must
     have a place for the frame, as `mesh_%04d.obj` (.png takes that too). Skeletons .bvh, or .amc with an .asf, tables .csv,
-    motion graphs .json and .graphml,
+    graphs .json and .graphml,
     matrices .png, anything .npz. Fields may be lazy: frames are read one at a time. name: of the object
     inside .glb and .usd. picture: draws other products as RGB uint8 for .png.
 

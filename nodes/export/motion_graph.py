@@ -1,4 +1,4 @@
-"""Motion graphs as JSON and GraphML."""
+"""Motion graphs and graphs of poses as JSON and GraphML."""
 
 from __future__ import annotations
 
@@ -9,15 +9,17 @@ import networkx
 
 from reperform.nodes.export.atomic import beside
 from reperform.nodes.motion_graph.network import network
+from reperform.nodes.motion_graph.pose_network import pose_network
+from reperform.nodes.products.essential import PoseGraph
 from reperform.nodes.products.motion import MotionGraph
 
 
-def write_motion_graph(path: Path, graph: MotionGraph) -> None:
-    """Takes as nodes and transitions as edges with all their numbers; complete or absent.
+def write_motion_graph(path: Path, graph: MotionGraph | PoseGraph) -> None:
+    """Takes (or poses) as nodes and transitions as edges with all their numbers; complete or absent.
 
     .json is networkx's node-link form, .graphml is read by yEd, Gephi and others.
     """
-    drawn = network(graph)
+    drawn = pose_network(graph) if isinstance(graph, PoseGraph) else network(graph)
     with beside(path) as draft:
         if path.suffix.lower() == ".graphml":
             networkx.write_graphml(drawn, draft, named_key_ids=True)

@@ -23,6 +23,15 @@ FIGURES = {
         "hybrid_over_linear": ("<=", 1.5),
         "memory_ratio_at_5mm": ("<=", 0.33),
     },
+    "essential_graph": {
+        "pairs_at_or_below_motion_graph": (">=", 1.0),
+        "pairs_equal_to_complete_digraph": (">=", 1.0),
+        "mean_saving_percent": ("", None),
+        "edges_kept_share": ("", None),
+        "demo_graph_s": ("<=", 60.0),
+        "time_exponent": ("", None),
+        "memory_exponent": ("", None),
+    },
     "joins": {
         "contact_speed_m_s": ("<=", 0.05),
         "volume_change": ("<=", 0.01),
@@ -36,6 +45,13 @@ FIGURES = {
         "speedup_vs_ilp": (">=", 7.0),
         "optimality_gap": ("<=", 0.0),
         "smoothness_m": ("<=", 0.04),
+    },
+    "pose_metric": {
+        "spearman_metric": ("", None),
+        "spearman_vertex": ("", None),
+        "metric_beats_vertex": (">=", 1.0),
+        "spearman_approximation": (">=", 0.995),
+        "speedup_approximation": (">=", 20.0),
     },
     "quickstart": {
         "hull_volume_over_ideal": ("<=", 1.05),
