@@ -32,6 +32,15 @@ FIGURES = {
         "time_exponent": ("", None),
         "memory_exponent": ("", None),
     },
+    "essential_motion": {
+        "skate_ratio": ("<=", 0.6),
+        "volume_error": ("<=", 0.01),
+        "junction_acceleration_ratio": ("<=", 1.0),
+        "path_rms_m": ("<=", 0.15),
+        "time_error_frames": ("<=", 2.0),
+        "search_speedup_vs_dfs": (">=", 10.0),
+        "search_gap": ("<=", 0.02),
+    },
     "joins": {
         "contact_speed_m_s": ("<=", 0.05),
         "volume_change": ("<=", 0.01),

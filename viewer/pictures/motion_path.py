@@ -23,9 +23,9 @@ def motion_path_picture(product: MotionPath, frame: int, look: Look) -> np.ndarr
             below = fig.subplots()
         else:
             above, below = fig.subplots(2, 1, height_ratios=[1, 1])
-            _draw_track(above, track, source, frame)
+            draw_track(above, track, source, frame)
         rate = float(np.asarray(product.fps)) or 25.0
-        _draw_sources(below, source, frame, rate)
+        draw_sources(below, source, frame, rate)
         fig.suptitle(_promise(product), fontsize=10, color=INK)
         return pixels(fig)
 
@@ -61,7 +61,8 @@ def _runs(source: Provenance) -> list[tuple[int, int, int]]:
     return [(a, b, int(main[a])) for a, b in itertools.pairwise(cuts) if b > a]
 
 
-def _draw_track(axis: Any, track: np.ndarray, source: Provenance, frame: int) -> None:
+def draw_track(axis: Any, track: np.ndarray, source: Provenance, frame: int) -> None:
+    """The ground track (frames, 2), m, each stretch in the colour of the take that weighs most in it."""
     names = np.asarray(source.takes).tolist()
     known: set[int] = set()
     for a, b, take in _runs(source):
@@ -90,7 +91,8 @@ def _draw_track(axis: Any, track: np.ndarray, source: Provenance, frame: int) ->
     axis.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=8.5)
 
 
-def _draw_sources(axis: Any, source: Provenance, frame: int, rate: float) -> None:
+def draw_sources(axis: Any, source: Provenance, frame: int, rate: float) -> None:
+    """Which captured frame of which take plays when; shaded where two are blended."""
     take, index = np.asarray(source.take), np.asarray(source.source_frame)
     weight, names = np.asarray(source.weight), np.asarray(source.takes).tolist()
     time = np.arange(len(take)) / rate

@@ -32,6 +32,7 @@ from reperform.viewer.pictures.photographs import (
     plate_picture,
 )
 from reperform.viewer.pictures.pose_graph import pose_graph_picture, pose_transitions_picture
+from reperform.viewer.pictures.pose_walk import pose_walk_picture
 from reperform.viewer.pictures.pruning_report import pruned_graph_picture, pruning_report_picture
 from reperform.viewer.pictures.rig import camera_path_picture, cameras_picture
 from reperform.viewer.pictures.shape_tree import shape_tree_picture
@@ -66,6 +67,7 @@ PAINTERS: dict[str, Painter] = {
     "PathCosts": path_costs_picture,
     "PoseGraph": pose_graph_picture,
     "PoseTransitions": pose_transitions_picture,
+    "PoseWalk": pose_walk_picture,
     "SkeletonSequence": skeleton_picture,
     "Mocap": mocap_picture,
     "SkeletalAnimation": skeletal_animation_picture,

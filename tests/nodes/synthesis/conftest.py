@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 import trimesh
 
+from reperform.nodes.motion_graph.essential import essential
+from reperform.nodes.motion_graph.pose_transitions import pose_transitions
 from reperform.nodes.motion_graph.surface import surface
+from reperform.nodes.products.essential import PoseGraph
 from reperform.nodes.products.mesh import MeshSequence
-from reperform.nodes.products.motion import MotionGraph
+from reperform.nodes.products.motion import Dissimilarity, MotionGraph
 from reperform.nodes.similarity.vertex_velocity import vertex_velocity
 
 
@@ -45,3 +48,30 @@ def meshes() -> Mapping[str, MeshSequence]:
 def graph(meshes: Mapping[str, MeshSequence]) -> MotionGraph:
     similarity = {(a, b): vertex_velocity((meshes[a], meshes[b])) for a in meshes for b in meshes}
     return surface(similarity, meshes, transitions=8)
+
+
+@pytest.fixture(scope="session")
+def strides() -> Mapping[str, MeshSequence]:
+    """Short takes for graphs of poses."""
+    return {
+        "ahead": walker(26, 1.3, 0.0, 0.0),
+        "left": walker(28, 1.2, 0.8, 4.0),
+        "right": walker(24, 1.2, -0.8, 11.0),
+    }
+
+
+@pytest.fixture(scope="session")
+def likeness(strides: Mapping[str, MeshSequence]) -> Mapping[tuple[str, str], Dissimilarity]:
+    return {(a, b): vertex_velocity((strides[a], strides[b])) for a in strides for b in strides}
+
+
+@pytest.fixture(scope="session")
+def pose_graph(
+    strides: Mapping[str, MeshSequence], likeness: Mapping[tuple[str, str], Dissimilarity]
+) -> PoseGraph:
+    return essential(
+        {
+            (a, b): pose_transitions(matrix, (strides[a], strides[b]), alpha=0.02, shortest=0.2, longest=0.5)
+            for (a, b), matrix in likeness.items()
+        }
+    )
