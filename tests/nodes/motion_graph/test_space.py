@@ -100,6 +100,26 @@ def test_a_reach_is_measured_at_the_marked_vertex(takes):
     assert made.value[:, 0] == pytest.approx(made.vertices[:, pose, vertex, 1])
 
 
+def test_three_parameters_of_a_reach_are_inverted_together(takes):
+    """The last vertex goes out to known places and back; the rest stands, the last of the rest breathes."""
+    standing = takes[0]["low"]
+    rest = standing.vertices[0].astype(float)
+    places = [[0.6, 1.2, 0.5], [-0.5, 1.3, 0.6], [0.1, 2.3, 0.4], [0.0, 1.4, 1.3], [0.05, 1.5, 0.7]]
+    out_and_back = np.sin(np.pi * np.arange(15) / 14)[:, None]
+    meshes = {}
+    for k, place in enumerate(places):
+        points = np.repeat(rest[None], 15, axis=0)
+        points[:, 43] += out_and_back * (np.array(place) - rest[43])
+        meshes[f"reach{k}"] = MeshSequence(points.astype(np.float32), standing.faces, standing.fps)
+    made = space(meshes, parameters=("reach_x", "reach_y", "reach_z"), cyclic=False, blend="linear")
+    assert made.reach.tolist() == [43, 7]
+    assert made.cells.shape[1] == 4
+    # from the root: the mean vertex, at first
+    origin = rest.mean(axis=0) * [1, 0, 1]
+    assert made.value == pytest.approx(np.array(places) - origin, abs=0.02)
+    assert made.inverse_error[:, 0].max() < 0.01
+
+
 def test_without_contacts_cycles_are_in_phase_all_the_same(takes):
     meshes, contacts = takes
     names = ("slow", "fast", "left", "right")
