@@ -71,6 +71,19 @@ def test_a_captured_dancer_in_a_skirt_stands_on_two_feet(data_folder: Path) -> N
     assert (vertices[:, found.foot >= 0, 1].min(axis=0) < 0.07).all()
 
 
+def test_soles_of_a_clothed_walker_lie_on_the_feet_as_labelled(data_folder: Path) -> None:
+    with np.load(data_folder / "twin" / "watertight.npz") as stored:
+        walk, faces = stored["walk"].astype(np.float32), stored["faces"]
+        part = stored["label_names"][stored["labels"]]
+    found = foot_contacts([walk], faces, 25.0)
+    assert set(part[found.foot == 0]) == {"foot_l"}
+    assert set(part[found.foot == 1]) == {"foot_r"}
+    # a walk: never two feet in the air, and each in the air for a part of the time
+    early = found.planted[0][:50]
+    assert early.any(axis=1).mean() > 0.9
+    assert (early.mean(axis=0) < 0.8).all()
+
+
 def test_takes_of_different_meshes_are_refused(walk: Performance) -> None:
     with pytest.raises(ValueError, match=r"must be \(T, V, 3\) with one V"):
         foot_contacts([walk.mesh.vertices, walk.mesh.vertices[:, 1:]], walk.mesh.faces, 25.0)
