@@ -63,7 +63,8 @@ def space(
 
     meshes: takes of one topology, m; contacts: which feet rest on the ground. Poses are told from travel (the root),
     one cycle is cut out and closed, takes are warped in time onto each other with feet coming down (and going up,
-    where all takes agree in order) as hard constraints. Blends are measured at weights 0.05 apart, p = f(w), and f is
+    where all takes agree in order) as hard constraints. Blends are measured at weights 0.05 apart (0.1 with three
+    parameters), p = f(w), and f is
     inverted.
 
     Raises ValueError where takes are fewer than two or unknown, differ in topology or rate, do not repeat themselves
