@@ -111,7 +111,7 @@ def _draw_graph(axis: Any, product: MotionGraph, takes: list[str]) -> None:
         aspect="equal",
     )
     outside = int((~np.asarray(product.core)).sum())
-    dashed = f", {outside} of them (dashed) outside the core" if outside else ""
+    dashed = f"\n{outside} of them (dashed) lie outside the core" if outside else ""
     title = f"{len(takes)} takes, {len(edges)} edges, {len(product.source)} transitions"
     axis.set_title(title + dashed, loc="left", fontsize=10)
     axis.axis("off")
