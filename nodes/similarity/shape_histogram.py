@@ -8,13 +8,15 @@ import numpy as np
 
 from reperform.nodes.declaration import Param, node
 from reperform.nodes.kernels.spherical_histogram import spherical_histogram, volume_centroid
-from reperform.nodes.products.mesh import Surfaces
+from reperform.nodes.products.mesh import MeshSequence, Surfaces
 from reperform.nodes.products.shape_histograms import ShapeHistograms
+from reperform.nodes.texture.parameters import one_mesh
 
 
 @node(over="frame")
 def shape_histogram(
-    surfaces: Surfaces,
+    surfaces: Surfaces | None = None,
+    mesh: MeshSequence | None = None,
     *,
     radial: Annotated[int, Param("bins", 1, 64, "shells of equal thickness")] = 8,
     polar: Annotated[int, Param("bins", 1, 180, "equal angles from straight up to straight down")] = 12,
@@ -27,15 +29,17 @@ def shape_histogram(
     Computed exactly along the radius from signed tetrahedra, so closed meshes of any topology and
     overlapping parts are fine.
 
-    Raises ValueError where the mesh bounds no volume (empty, open, or its faces turned inside out).
+    Raises ValueError unless exactly one of surfaces and mesh is wired, or where it bounds no volume (empty, open, or
+    its faces turned inside out).
 
     Source: 003 section 3.2.2 (eq 12); Huang, Hilton and Starck, "Shape similarity for 3D video sequences of
     people", IJCV 2010.
     Departure: linear split over neighbouring angular bins in place of fine bins that are counted again
     coarsely.
     """
-    vertices = np.ascontiguousarray(surfaces.vertices, dtype=np.float64)
-    faces = np.ascontiguousarray(surfaces.faces)
+    source = one_mesh("similarity.shape_histogram", mesh, surfaces)
+    vertices = np.ascontiguousarray(source.vertices, dtype=np.float64)
+    faces = np.ascontiguousarray(source.faces)
     volume, centre = volume_centroid(vertices, faces) if len(faces) else (0.0, np.zeros(3))
     if not volume > 0:
         raise ValueError(

@@ -91,6 +91,15 @@ FIGURES = {
         "contact_speed_m_s": ("<=", 0.05),
         "path_max_error_m": ("<=", 0.15),
     },
+    "similarity_measures": {
+        "precision_gain_6d_over_3d": (">=", 0.2),
+        "matrix_6d_s": ("<=", 300.0),
+        "spearman_vs_exact_emd": (">=", 0.99),
+        "top4_agreement": (">=", 1.0),
+        "speedup_vs_exact": (">=", 1000.0),
+        "matrix_3d_1500_s": ("<=", 10.0),
+        "transition_ms_per_pair": ("<=", 5.0),
+    },
     "transition_latency": {
         "search_ms_depth10": ("<=", 0.1),
         "online_latency_over_precomputed": ("<=", 0.6),

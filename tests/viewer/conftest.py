@@ -13,6 +13,7 @@ from reperform.nodes.product import product_fields
 from reperform.nodes.products.cameras import CameraPath, Cameras
 from reperform.nodes.products.footage import CleanPlate, Film, Footage, Mattes
 from reperform.nodes.products.key_frame_table import KeyFrameTable
+from reperform.nodes.products.measure_comparison import MeasureComparison
 from reperform.nodes.products.mesh import MeshSequence, Occupancy, Surfaces, TextureAtlas
 from reperform.nodes.products.mocap import Mocap, SkeletalAnimation
 from reperform.nodes.products.motion import Dissimilarity, MotionGraph, MotionPath, Provenance, ShapeTree
@@ -100,6 +101,16 @@ def graph() -> MotionGraph:
         core=np.array([True, True, True, True, False, True, True]),
         fps=FPS,
     )
+
+
+def comparison() -> MeasureComparison:
+    """Two measures of two takes, with one transition each."""
+    distance = np.stack([matrix(30, 30).distance, matrix(30, 30).distance ** 2])
+    one = np.int32([0, 1])
+    return MeasureComparison(
+        np.array(["shape", "skeleton"]), np.array(["walk", "jog"]), np.int32([12, 18]), distance,
+        one, one, 1 - one, np.int32([4, 9]), np.int32([6, 3]), np.array([0.1, 0.2]), np.int32(4),
+    )  # fmt: skip
 
 
 def matrix(rows: int, columns: int) -> Dissimilarity:
@@ -223,6 +234,7 @@ def make_products() -> dict[str, Any]:
         "cameras": cameras(),
         "orbit": CameraPath(eye.matrix, eye.rotation, eye.translation, np.int32([160, 90])),
         "matrix": matrix(24, 30),
+        "comparison": comparison(),
         "graph": graph(),
         "path": path(),
         "tree": ShapeTree(

@@ -18,6 +18,7 @@ from reperform.viewer.pictures.blends import (
 )
 from reperform.viewer.pictures.look import Look
 from reperform.viewer.pictures.matrix import matrix_picture
+from reperform.viewer.pictures.measure_comparison import measure_comparison_picture
 from reperform.viewer.pictures.motion_graph import motion_graph_picture
 from reperform.viewer.pictures.motion_path import motion_path_picture
 from reperform.viewer.pictures.occupancy import occupancy_picture
@@ -57,6 +58,7 @@ PAINTERS: dict[str, Painter] = {
     "Cameras": cameras_picture,
     "CameraPath": camera_path_picture,
     "Dissimilarity": matrix_picture,
+    "MeasureComparison": measure_comparison_picture,
     "MotionGraph": motion_graph_picture,
     "ParametricSpace": parametric_space_picture,
     "ParametricGraph": parametric_graph_picture,

@@ -27,6 +27,7 @@ NAMES = [
     "cameras",
     "orbit",
     "matrix",
+    "comparison",
     "graph",
     "path",
     "tree",

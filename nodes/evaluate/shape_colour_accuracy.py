@@ -1,0 +1,203 @@
+"""How fast and how true the shape-colour matrices are, against earth mover's distances of all bins."""
+
+from __future__ import annotations
+
+import itertools
+import time
+from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
+from typing import Annotated, NamedTuple
+
+import numpy as np
+from scipy.stats import spearmanr
+
+from reperform.nodes.declaration import Param, node
+from reperform.nodes.kernels.signatures import Signatures, common_planes, merged, ordered
+from reperform.nodes.kernels.transitions import find_transitions, window_cost
+from reperform.nodes.kernels.turned_transport import least_turn, turn_values, turned_cost
+from reperform.nodes.product import Dataset
+from reperform.nodes.products.measures import Measures
+from reperform.nodes.products.shape_colour import ShapeColourHistograms
+from reperform.nodes.similarity.shape_colour import shape_colour, shape_colour_signatures
+
+# cells by which the turns of the exact side are chosen, and how far above the least they may be
+_CELLS, _MARGIN = 256, 1.1
+_TURNS, _COLOUR_WEIGHT = 20, 1.0
+
+
+class _Frame(NamedTuple):
+    take: str
+    number: int
+
+
+class _Exact(NamedTuple):
+    """The distance of all bins, its turn, and the seconds that POT takes for one turn (nan: not asked)."""
+
+    distance: float
+    turn: int
+    seconds: float
+
+
+@node(over="dataset", volatile=True, memory=3.0, threads=2)
+def shape_colour_accuracy(
+    histograms: Dataset[ShapeColourHistograms],
+    *,
+    pairs: Annotated[int, Param("1", 2, 100_000, "random pairs of frames solved exactly")] = 200,
+    all_turns: Annotated[int, Param("1", 0, 100_000, "of these, with every turn solved")] = 8,
+    source: Annotated[str, Param(about="the take whose transitions are ranked; empty: the first")] = "",
+    target: Annotated[str, Param(about="the take they lead to; empty: the last")] = "",
+    candidates: Annotated[int, Param("1", 4, 1000, "transitions whose windows are solved exactly")] = 12,
+    half_length: Annotated[int, Param("frame", 1, 100, "of the window of a transition (L)")] = 4,
+    seed: Annotated[int, Param("1", 0, 2**31, "of the random pairs")] = 0,
+) -> Measures:
+    """Time and truth of the matrices of all ordered pairs of takes, one row.
+
+    `matrix` s: wall time of similarity.shape_colour over all ordered pairs, in two threads. Exact is POT's earth
+    mover's distance between all filled bins, least over the 20 turns. On the random pairs: `spearman` of matrix and
+    exact; `exact` s per pair: POT's time for one turn (alone in its thread) times the turns; `speedup`: exact over
+    the matrix' seconds of a thread per pair. Of the exact side's turns, those are solved whose distance by 256
+    cells is within 1.1 of the least; `turn agreement` is the share of the `all_turns` pairs on which solving every
+    turn finds the same distance. `solver difference` m: the largest from POT of the own solver that does so.
+    `top4 agreement`: the exact windowed costs of the candidate transitions (the cheapest local minima of the
+    matrix) are ranked; the share of their four cheapest that are the matrix' four cheapest.
+    Without POT the figures that need it are nan.
+
+    Raises ValueError where a take does not exist or there is no transition.
+    Source: 000 section 4.1 (eq 1) and 4.2; Flamary et al. 2021, JMLR 22 (POT).
+    """
+    takes = list(histograms)
+    ends = (source or takes[0], target or takes[-1])
+    for take in ends:
+        if take not in histograms:
+            raise ValueError(f"evaluate.shape_colour_accuracy: no take {take!r} among {', '.join(takes)}")
+    seconds, matrices = _matrices(histograms)
+    signatures = {t: shape_colour_signatures(histograms[t], _COLOUR_WEIGHT) for t in takes}
+    bins = _Bins(signatures)
+    frames = [_Frame(t, k) for t in takes for k in range(len(signatures[t].first) - 1)]
+    chosen = _random_pairs(len(frames), pairs, seed)
+    with ThreadPoolExecutor(2) as pool:
+        exact = list(pool.map(lambda p: bins.exact(frames[p[0]], frames[p[1]], pot=True), chosen))
+        full = list(pool.map(lambda p: bins.exact_all(frames[p[0]], frames[p[1]]), chosen[:all_turns]))
+    ours = [matrices[frames[i].take, frames[j].take][frames[i].number, frames[j].number] for i, j in chosen]
+    known = np.array([e.distance for e in exact])
+    per_pair = 2 * seconds / len(frames) ** 2
+    alone = _TURNS * float(np.median([e.seconds for e in exact]))
+    agree = [np.isclose(a, b.distance, rtol=1e-9) for a, b in zip(full, exact, strict=False)]
+    values = {
+        "matrix": (seconds, "s"),
+        "frames": (float(len(frames)), "1"),
+        "exact": (alone, "s"),
+        "speedup": (alone / per_pair, "1"),
+        "spearman": (float(spearmanr(ours, known)[0]), "1"),
+        "turn agreement": (float(np.mean(agree)) if agree else np.nan, "1"),
+        "solver difference": (bins.difference, "m"),
+        "mean ratio": (float(np.mean(np.array(ours) / known)), "1"),
+        "top4 agreement": (_agreement(bins, matrices[ends], ends, candidates, half_length), "1"),
+    }
+    return Measures(
+        np.array([[value for value, _ in values.values()]]),
+        np.array(list(values)),
+        np.array([unit for _, unit in values.values()]),
+    )
+
+
+def _matrices(
+    histograms: Dataset[ShapeColourHistograms],
+) -> tuple[float, Mapping[tuple[str, str], np.ndarray]]:
+    """Wall seconds for all ordered pairs of takes, and the matrices."""
+    read = {t: ShapeColourHistograms(*histograms[t]) for t in histograms}
+    few = {t: _first_frames(read[t], 2) for t in read}
+    shape_colour((next(iter(few.values())),) * 2)  # compiled before time is taken
+    names = list(itertools.product(read, read))
+    start = time.perf_counter()
+    with ThreadPoolExecutor(2) as pool:
+        found = list(pool.map(lambda ab: shape_colour((read[ab[0]], read[ab[1]])).distance, names))
+    return time.perf_counter() - start, dict(zip(names, found, strict=True))
+
+
+def _first_frames(histograms: ShapeColourHistograms, count: int) -> ShapeColourHistograms:
+    fields = ("bin", "share", "point", "colour", "centre")
+    return histograms._replace(**{name: getattr(histograms, name)[:count] for name in fields})
+
+
+def _random_pairs(frames: int, count: int, seed: int) -> list[tuple[int, int]]:
+    """Distinct pairs i < j."""
+    i, j = np.triu_indices(frames, 1)
+    rng = np.random.default_rng(seed)
+    picked = rng.choice(len(i), min(count, len(i)), replace=False)
+    return [(int(i[k]), int(j[k])) for k in picked]
+
+
+class _Bins:
+    """All filled bins of all frames, and their distances."""
+
+    def __init__(self, signatures: Mapping[str, Signatures]) -> None:
+        planes = common_planes(list(signatures.values()), _CELLS)
+        self.full = {t: ordered(s, planes) for t, s in signatures.items()}
+        self.cells = {t: merged(s, planes) for t, s in signatures.items()}
+        self.difference = np.nan
+        self.known: dict[tuple[_Frame, _Frame], _Exact] = {}
+
+    def exact(self, a: _Frame, b: _Frame, pot: bool = False) -> _Exact:
+        """The least over the turns that the cells leave."""
+        if (a, b) in self.known and not pot:
+            return self.known[a, b]
+        x, y = self._problem(a, b, self.cells)
+        values = turn_values(*x, *y, _TURNS)
+        order = np.argsort(values, kind="stable")
+        tried = int((values <= _MARGIN * values.min()).sum())
+        x, y = self._problem(a, b, self.full)
+        distance, turn = least_turn(*x, *y, _TURNS, order, tried)
+        seconds = np.nan
+        if pot:
+            peer, seconds = _pot(x[0], y[0], turned_cost(x[1], y[1], 2 * np.pi * turn / _TURNS))
+            self.difference = float(np.fmax(self.difference, abs(peer - distance)))
+            distance = peer
+        self.known[a, b] = _Exact(distance, turn, seconds)
+        return self.known[a, b]
+
+    def exact_all(self, a: _Frame, b: _Frame) -> float:
+        """The least over all turns."""
+        x, y = self._problem(a, b, self.full)
+        first = self.exact(a, b).turn
+        order = np.array([first, *(k for k in range(_TURNS) if k != first)])
+        return float(least_turn(*x, *y, _TURNS, order, _TURNS)[0])
+
+    def _problem(
+        self, a: _Frame, b: _Frame, sets: Mapping[str, Signatures]
+    ) -> tuple[tuple[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]:
+        x, y = sets[a.take], sets[b.take]
+        rows, columns = (slice(s.first[f.number], s.first[f.number + 1]) for s, f in ((x, a), (y, b)))
+        return (x.mass[rows], x.point[rows]), (y.mass[columns], y.point[columns])
+
+
+def _pot(supply: np.ndarray, demand: np.ndarray, cost: np.ndarray) -> tuple[float, float]:
+    """POT's distance and its seconds in this thread; nan without POT."""
+    try:
+        import ot
+    except ImportError:
+        return np.nan, np.nan
+    start = time.thread_time()
+    value = float(ot.emd2(supply / supply.sum(), demand / demand.sum(), cost, numItermax=10_000_000))
+    return value, time.thread_time() - start
+
+
+def _agreement(bins: _Bins, matrix: np.ndarray, ends: tuple[str, str], candidates: int, half: int) -> float:
+    """Share of the exact four cheapest candidate transitions that are the matrix' four cheapest."""
+    best = find_transitions(matrix, candidates, half, half, spread=half)
+    if len(best.m) < 4:
+        raise ValueError(
+            f"evaluate.shape_colour_accuracy: four transitions {ends[0]} to {ends[1]} needed, got {len(best.m)}: "
+            "use longer takes"
+        )
+    cells = sorted(
+        {(int(m) + k, int(n) + k) for m, n in zip(best.m, best.n, strict=True) for k in range(1 - half, half)}
+    )
+    with ThreadPoolExecutor(2) as pool:
+        solved = list(
+            pool.map(lambda c: bins.exact(_Frame(ends[0], c[0]), _Frame(ends[1], c[1])).distance, cells)
+        )
+    exact = np.full(matrix.shape, np.nan)
+    exact[tuple(np.array(cells).T)] = solved
+    costs = [window_cost(exact, int(m), int(n), half) for m, n in zip(best.m, best.n, strict=True)]
+    return len(set(np.argsort(costs, kind="stable")[:4]) & set(range(4))) / 4
