@@ -12,16 +12,16 @@ import numpy as np
 from scipy.stats import spearmanr
 
 from reperform.nodes.declaration import Param, node
-from reperform.nodes.kernels.signatures import Signatures, common_planes, merged, ordered
+from reperform.nodes.kernels.signatures import Signatures, common_planes, merged, single
 from reperform.nodes.kernels.transitions import find_transitions, window_cost
-from reperform.nodes.kernels.turned_transport import least_turn, turn_values, turned_cost
+from reperform.nodes.kernels.turned_transport import least_turn, promising_turns, turned
 from reperform.nodes.product import Dataset
 from reperform.nodes.products.measures import Measures
 from reperform.nodes.products.shape_colour import ShapeColourHistograms
 from reperform.nodes.similarity.shape_colour import shape_colour, shape_colour_signatures
 
 # cells by which the turns of the exact side are chosen, and how far above the least they may be
-_CELLS, _MARGIN = 256, 1.1
+_CELLS, _MARGIN = 160, 1.08
 _TURNS, _COLOUR_WEIGHT = 20, 1.0
 
 
@@ -50,13 +50,13 @@ def shape_colour_accuracy(
     half_length: Annotated[int, Param("frame", 1, 100, "of the window of a transition (L)")] = 4,
     seed: Annotated[int, Param("1", 0, 2**31, "of the random pairs")] = 0,
 ) -> Measures:
-    """Time and truth of the matrices of all ordered pairs of takes, one row.
+    """Time and truth of the shape-colour matrices of all frames of all takes, one row.
 
-    `matrix` s: wall time of similarity.shape_colour over all ordered pairs, in two threads. Exact is POT's earth
+    `matrix` s: wall time of similarity.shape_colour over all pairs of takes, each once, in two threads. Exact is POT's earth
     mover's distance between all filled bins, least over the 20 turns. On the random pairs: `spearman` of matrix and
     exact; `exact` s per pair: POT's time for one turn (alone in its thread) times the turns; `speedup`: exact over
-    the matrix' seconds of a thread per pair. Of the exact side's turns, those are solved whose distance by 256
-    cells is within 1.1 of the least; `turn agreement` is the share of the `all_turns` pairs on which solving every
+    the matrix' seconds of a thread per pair. Of the exact side's turns, those are solved whose distance by 160
+    cells is within 1.08 of the least; `turn agreement` is the share of the `all_turns` pairs on which solving every
     turn finds the same distance. `solver difference` m: the largest from POT of the own solver that does so.
     `top4 agreement`: the exact windowed costs of the candidate transitions (the cheapest local minima of the
     matrix) are ranked; the share of their four cheapest that are the matrix' four cheapest.
@@ -80,7 +80,8 @@ def shape_colour_accuracy(
         full = list(pool.map(lambda p: bins.exact_all(frames[p[0]], frames[p[1]]), chosen[:all_turns]))
     ours = [matrices[frames[i].take, frames[j].take][frames[i].number, frames[j].number] for i, j in chosen]
     known = np.array([e.distance for e in exact])
-    per_pair = 2 * seconds / len(frames) ** 2
+    # two threads; each pair of frames once
+    per_pair = 2 * seconds / (len(frames) * (len(frames) - 1) / 2)
     alone = _TURNS * float(np.median([e.seconds for e in exact]))
     agree = [np.isclose(a, b.distance, rtol=1e-9) for a, b in zip(full, exact, strict=False)]
     values = {
@@ -104,15 +105,17 @@ def shape_colour_accuracy(
 def _matrices(
     histograms: Dataset[ShapeColourHistograms],
 ) -> tuple[float, Mapping[tuple[str, str], np.ndarray]]:
-    """Wall seconds for all ordered pairs of takes, and the matrices."""
+    """Wall seconds for all pairs of takes, each once, and the matrices of the ordered ones."""
     read = {t: ShapeColourHistograms(*histograms[t]) for t in histograms}
     few = {t: _first_frames(read[t], 2) for t in read}
     shape_colour((next(iter(few.values())),) * 2)  # compiled before time is taken
-    names = list(itertools.product(read, read))
+    names = list(itertools.combinations_with_replacement(read, 2))
     start = time.perf_counter()
     with ThreadPoolExecutor(2) as pool:
         found = list(pool.map(lambda ab: shape_colour((read[ab[0]], read[ab[1]])).distance, names))
-    return time.perf_counter() - start, dict(zip(names, found, strict=True))
+    seconds = time.perf_counter() - start
+    both = {(b, a): distance.T for (a, b), distance in zip(names, found, strict=True)}
+    return seconds, both | dict(zip(names, found, strict=True))
 
 
 def _first_frames(histograms: ShapeColourHistograms, count: int) -> ShapeColourHistograms:
@@ -133,42 +136,36 @@ class _Bins:
 
     def __init__(self, signatures: Mapping[str, Signatures]) -> None:
         planes = common_planes(list(signatures.values()), _CELLS)
-        self.full = {t: ordered(s, planes) for t, s in signatures.items()}
+        self.full = signatures
         self.cells = {t: merged(s, planes) for t, s in signatures.items()}
+        self.turned_cells = {t: merged(turned(s, _TURNS), planes) for t, s in signatures.items()}
         self.difference = np.nan
-        self.known: dict[tuple[_Frame, _Frame], _Exact] = {}
 
     def exact(self, a: _Frame, b: _Frame, pot: bool = False) -> _Exact:
         """The least over the turns that the cells leave."""
-        if (a, b) in self.known and not pot:
-            return self.known[a, b]
-        x, y = self._problem(a, b, self.cells)
-        values = turn_values(*x, *y, _TURNS)
-        order = np.argsort(values, kind="stable")
-        tried = int((values <= _MARGIN * values.min()).sum())
-        x, y = self._problem(a, b, self.full)
-        distance, turn = least_turn(*x, *y, _TURNS, order, tried)
+        distance, turn = self._least(a, b, self._promising(a, b, _MARGIN))
         seconds = np.nan
         if pot:
-            peer, seconds = _pot(x[0], y[0], turned_cost(x[1], y[1], 2 * np.pi * turn / _TURNS))
+            x, y = single(self.full[a.take], a.number), single(self.full[b.take], b.number)
+            y = single(turned(y, _TURNS), turn)
+            peer, seconds = _pot(x.mass, y.mass, np.linalg.norm(x.point[:, None] - y.point[None], axis=2))
             self.difference = float(np.fmax(self.difference, abs(peer - distance)))
             distance = peer
-        self.known[a, b] = _Exact(distance, turn, seconds)
-        return self.known[a, b]
+        return _Exact(distance, turn, seconds)
 
     def exact_all(self, a: _Frame, b: _Frame) -> float:
         """The least over all turns."""
-        x, y = self._problem(a, b, self.full)
-        first = self.exact(a, b).turn
-        order = np.array([first, *(k for k in range(_TURNS) if k != first)])
-        return float(least_turn(*x, *y, _TURNS, order, _TURNS)[0])
+        return self._least(a, b, self._promising(a, b, np.inf))[0]
 
-    def _problem(
-        self, a: _Frame, b: _Frame, sets: Mapping[str, Signatures]
-    ) -> tuple[tuple[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]:
-        x, y = sets[a.take], sets[b.take]
-        rows, columns = (slice(s.first[f.number], s.first[f.number + 1]) for s, f in ((x, a), (y, b)))
-        return (x.mass[rows], x.point[rows]), (y.mass[columns], y.point[columns])
+    def _promising(self, a: _Frame, b: _Frame, margin: float) -> np.ndarray:
+        cells, every = self.cells[a.take], self.turned_cells[b.take]
+        return promising_turns(cells, a.number, every, b.number, _TURNS, np.arange(_TURNS), margin)
+
+    def _least(self, a: _Frame, b: _Frame, order: np.ndarray) -> tuple[float, int]:
+        x = single(self.full[a.take], a.number)
+        every = turned(single(self.full[b.take], b.number), _TURNS)
+        distance, turn = least_turn(x, 0, every, 0, _TURNS, order)
+        return float(distance), int(turn)
 
 
 def _pot(supply: np.ndarray, demand: np.ndarray, cost: np.ndarray) -> tuple[float, float]:

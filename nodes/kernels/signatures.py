@@ -136,8 +136,7 @@ def merged(take: Signatures, planes: Planes) -> Signatures:
     return Signatures(first, mass[filled], sums[filled] / mass[filled, None])
 
 
-def ordered(take: Signatures, planes: Planes) -> Signatures:
-    """The same points, within each frame in the order of their cells."""
-    frame = np.repeat(np.arange(len(take.first) - 1), np.diff(take.first))
-    order = np.lexsort((cells_of(take.point, planes), frame))
-    return Signatures(take.first, take.mass[order], take.point[order])
+def single(take: Signatures, frame: int) -> Signatures:
+    """One frame by itself."""
+    rows = slice(take.first[frame], take.first[frame + 1])
+    return Signatures(np.array([0, rows.stop - rows.start]), take.mass[rows], take.point[rows])

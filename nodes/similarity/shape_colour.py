@@ -7,15 +7,17 @@ from typing import Annotated
 import numpy as np
 
 from reperform.nodes.declaration import Param, node
-from reperform.nodes.kernels.signatures import Signatures, common_planes, merged, ordered, signatures
+from reperform.nodes.kernels.signatures import Signatures, common_planes, merged, signatures
 from reperform.nodes.kernels.temporal_filter import filter_diagonals
-from reperform.nodes.kernels.turned_transport import turned_transport
+from reperform.nodes.kernels.turned_transport import turned, turned_transport
 from reperform.nodes.product import Pair
 from reperform.nodes.products.motion import Dissimilarity
 from reperform.nodes.products.shape_colour import ShapeColourHistograms
 
-# cells by which the turns to be tried are chosen
-_COARSE = 16
+# cells by which the turns to be tried are chosen, first many turns by few cells, then few turns by more
+_ROUGH, _MIDDLE = 16, 64
+# the second margin's share of the first one's
+_CLOSER = 0.4
 
 
 @node(over="pair", memory=0.5)
@@ -27,7 +29,7 @@ def shape_colour(
     ] = 1.0,
     clusters: Annotated[
         int, Param("1", 0, 2000, "points that stand for a frame's filled bins; 0: all bins, exactly")
-    ] = 96,
+    ] = 256,
     turns: Annotated[
         int, Param("1", 1, 360, "equal turns about the vertical among which the best counts")
     ] = 20,
@@ -45,10 +47,10 @@ def shape_colour(
         squared distance over which a share of the surface is moved
 
     EMD is the least mean distance over which the surface must be moved to make one histogram of the other. All
-    filled bins of both takes are cut by common planes into `clusters` cells; each frame is represented by what its
-    cells hold, and EMD between those is exact (with 0 clusters: of all filled bins). It is within
+    filled bins of both takes are cut by common planes into `clusters` cells; each frame, at each turn, is represented
+    by what its cells hold, and EMD between those is exact (with 0 clusters: of all filled bins). It is within
     delta_a + delta_b of the full one, delta the mean distance of bins from the points that stand for them. The
-    turns worth trying are chosen by a rougher cut.
+    turns worth trying are chosen by rougher cuts.
 
     Raises ValueError where the histograms differ in bins or reach.
 
@@ -64,17 +66,23 @@ def shape_colour(
             "of similarity.shape_colour_histogram"
         )
     same = _equal(a, b)
-    fine = [shape_colour_signatures(take, colour_weight) for take in histograms]
-    coarse_planes = common_planes(fine, _COARSE)
-    coarse = [merged(take, coarse_planes) for take in fine]
-    planes = common_planes(fine, clusters or 256)
-    fine = [merged(take, planes) if clusters else ordered(take, planes) for take in fine]
-    tolerated = margin if clusters else np.inf
-    frames = len(a.centre)
-    distance, _ = turned_transport(*fine, *coarse, turns, tolerated, same, 0, frames)
+    first, second = (shape_colour_signatures(take, colour_weight) for take in histograms)
+    every = turned(second, turns)
+    levels = [_level((first, every), (first, second), count) for count in (_ROUGH, _MIDDLE)]
+    fine = _level((first, every), (first, second), clusters) if clusters else (first, every)
+    margins = (margin, 1 + _CLOSER * (margin - 1)) if clusters else (np.inf, np.inf)
+    distance = turned_transport(levels[0], levels[1], fine, turns, margins, same)
     if same:
         distance += distance.T
     return Dissimilarity(filter_diagonals(distance, filter_frames).astype(np.float32))
+
+
+def _level(
+    takes: tuple[Signatures, Signatures], planned: tuple[Signatures, Signatures], count: int
+) -> tuple[Signatures, Signatures]:
+    """Both takes by `count` common cells."""
+    planes = common_planes(planned, count)
+    return merged(takes[0], planes), merged(takes[1], planes)
 
 
 def shape_colour_signatures(histograms: ShapeColourHistograms, colour_weight: float) -> Signatures:

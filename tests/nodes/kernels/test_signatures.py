@@ -2,7 +2,7 @@ import itertools
 
 import numpy as np
 
-from reperform.nodes.kernels.signatures import cells_of, common_planes, merged, ordered, signatures
+from reperform.nodes.kernels.signatures import cells_of, common_planes, merged, signatures, single
 
 
 def _take(seed, frames=3, count=50):
@@ -45,11 +45,8 @@ def test_more_cells_than_points_leave_every_point_alone():
     np.testing.assert_allclose(np.sort(few.mass), np.sort(take.mass))
 
 
-def test_ordering_only_permutes_within_frames():
+def test_a_single_frame_is_that_frame():
     take = _take(4)
-    planes = common_planes([take], 6)
-    sorted_take = ordered(take, planes)
-    for t in range(3):
-        rows = slice(take.first[t], take.first[t + 1])
-        assert (np.diff(cells_of(sorted_take.point[rows], planes)) >= 0).all()
-        np.testing.assert_allclose(np.sort(sorted_take.mass[rows]), np.sort(take.mass[rows]))
+    one = single(take, 1)
+    assert one.first.tolist() == [0, 50]
+    np.testing.assert_array_equal(one.point, take.point[50:100])
