@@ -87,9 +87,9 @@ def turned_transport(
 ) -> np.ndarray:
     """Distances (Ta, Tb) of all frames of a from all frames of b, least over the turns; pairs of a and `turned` b.
 
-    Turning b and not a, cells may differ a little from those of the swapped pair. The rough signatures say which turns are tried on the middle ones and these which on the fine ones: those whose
-    distance is at most the margin times the least. With `same` (a is b) only frames of b after that of a are
-    filled in.
+    The rough signatures say which turns are tried on the middle ones and these which on the fine ones: those whose
+    distance is at most the margin times the least. Since b is turned and not a, cells may differ a little from those
+    of the swapped pair. With `same` (a is b) only frames of b after that of a are filled in.
     """
     rows, columns = len(fine[0].first) - 1, (len(fine[1].first) - 1) // turns
     distance = np.zeros((rows, columns))
