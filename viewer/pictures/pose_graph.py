@@ -53,8 +53,11 @@ def _draw_edges(fig: Any, axis: Any, product: PoseGraph, poses: int) -> None:
     source, target = np.asarray(product.source), np.asarray(product.target)
     blended = np.asarray(product.source_length) > 0
     # dots as wide as a cell of the matrix is in print
-    size = min(14.0, max(0.6, 230.0 / max(poses, 1)) ** 2)
-    axis.scatter(target[~blended], source[~blended], s=size, marker="s", color=ACCENT, linewidths=0)
+    size = min(14.0, max(0.8, 230.0 / max(poses, 1)) ** 2)
+    # played frames are few and lie in lines: they stay seen among many dots
+    axis.scatter(
+        target[~blended], source[~blended], s=max(size, 3.0), marker="s", color=ACCENT, linewidths=0, zorder=3
+    )
     dots = axis.scatter(
         target[blended], source[blended], s=size, c=np.asarray(product.cost)[blended], cmap=COLOURS, vmin=0,
         linewidths=0,
