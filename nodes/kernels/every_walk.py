@@ -52,7 +52,7 @@ def random_graph(seed: int, frames: Sequence[int] = (16, 12, 20), transitions: i
 def every_walk(graph: SmallGraph, keys: Sequence[Spot], horizon: int) -> EveryWalk:
     """Every walk of at most `horizon` steps that shows all key frames unblended and in order."""
     rows = []
-    for taken, steps in _walks(graph.passages, keys[0], keys[-1], horizon):
+    for taken, steps in walks(graph.passages, keys[0], keys[-1], horizon):
         frames = path_frames(keys[0].take, keys[0].frame, [graph.passages[k] for k in taken], keys[-1].frame)
         if _shows(frames, keys):
             length = arc_length(ground_track(frames, graph.tracks))
@@ -60,9 +60,10 @@ def every_walk(graph: SmallGraph, keys: Sequence[Spot], horizon: int) -> EveryWa
     return EveryWalk(*np.array(rows, np.float64).reshape(-1, 3).T)
 
 
-def _walks(
+def walks(
     passages: Sequence[Passage], start: Spot, end: Spot, horizon: int
 ) -> Iterator[tuple[tuple[int, ...], int]]:
+    """Transitions and steps of every walk from start to end of at most `horizon` steps."""
     pending: list[tuple[tuple[int, ...], int, int, int]] = [((), start.take, start.frame, 0)]
     while pending:
         taken, take, frame, steps = pending.pop()

@@ -7,16 +7,21 @@ from typing import Annotated
 import numpy as np
 
 from reperform.nodes.declaration import Param, node
+from reperform.nodes.kernels.ground_plane import align
+from reperform.nodes.kernels.placed_search import Goal, best_placed
 from reperform.nodes.kernels.prepared_search import PreparedSearch
-from reperform.nodes.kernels.walk_moves import Moves, Targets, Walk
+from reperform.nodes.kernels.walk_moves import Moves, Spot, Targets, Walk
 from reperform.nodes.product import Dataset
 from reperform.nodes.products.mesh import MeshSequence
 from reperform.nodes.products.motion import MotionGraph, MotionPath
+from reperform.nodes.synthesis.graph_walk import passages_of
 from reperform.nodes.synthesis.key_frame_targets import asked_targets, infeasible, moves_between, path_of
 
 _WHO = "synthesis.key_frames"
 # How far beyond the targets the nearest feasible one is looked for: factors of the horizon.
 _WIDER = (1, 2, 4)
+# Walks kept of each place and number of steps where position or heading count.
+_WIDTH = 100
 
 
 @node(over="dataset", memory=1.5)
@@ -36,6 +41,16 @@ def key_frames(
     duration_weight: Annotated[float, Param("1/s", 0.0, 1e6, "cost of a second too long or too short")] = 2.5,
     distance_tolerance: Annotated[float, Param("m", 0.0, 1000.0, "greatest error of the distance")] = 0.05,
     duration_tolerance: Annotated[float, Param("s", 0.0, 600.0, "greatest error of the duration")] = 0.08,
+    position: Annotated[
+        tuple[float, ...],
+        Param("m", about="where to end on the ground: x, z from where it starts; empty: anywhere"),
+    ] = (),
+    heading: Annotated[
+        float | None, Param("rad", -10.0, 10.0, "how far the performer turns from start to end")
+    ] = None,
+    position_weight: Annotated[float, Param("1/m", 0.0, 1e6, "cost of a metre away from the position")] = 10
+    / 3,
+    heading_weight: Annotated[float, Param("1/rad", 0.0, 1e6, "cost of a radian off the heading")] = 2.0,
     longest: Annotated[
         float, Param("s", 0.1, 600.0, "longest motion considered when no duration is asked")
     ] = 30.0,
@@ -50,11 +65,15 @@ def key_frames(
     included, by dynamic programming over (place, steps, distance). `bound` is proved to be under the cost of
     every walk within the tolerances; it equals the cost where all walks that rounding leaves open were tried.
 
+    With a position or heading, position_weight |place - position| + heading_weight |turn - heading| joins the cost
+    (coordinates of the first take; turn: how the last frame is turned against the first, by least squares). Then the
+    cheapest walks of each place and number of steps are kept, nearly alike ones once; `bound` disregards place.
+
     Raises ValueError where a key frame does not exist, the key frames cannot be joined, or no walk is within
     the tolerances; it then names the nearest distance and duration that can be met. With `nearest` that walk
     is returned instead, its errors to be read from the product.
 
-    Source: Huang, Tejera, Collomosse and Hilton 2015, ACM TOG (000 section 5.1, eqs 7-13).
+    Source: Huang, Tejera, Collomosse and Hilton 2015, ACM TOG (000 section 5.1, eqs 7-13); position: 003 eq 6.
     Departure: 000 enumerates walks and attaches loops by integer programming (eqs 14-25), where the target is
     subtracted once per loop and loops need not connect; the dynamic program covers every connected walk, with
     tolerances as hard limits. Weights as in 000: 0.3 m costs as much as 10 frames at 25 Hz.
@@ -73,11 +92,36 @@ def key_frames(
     reach = np.inf if distance is None else distance + distance_tolerance
     answer = PreparedSearch.fill(moves, horizon, reach, distance_weight).ask(asked)
     walk = answer.walk
+    if walk is not None and (position or heading is not None):
+        goal = _goal(graph, meshes, spots, position, heading, (position_weight, heading_weight))
+        placed = best_placed(moves, passages_of(graph), asked, goal, horizon, _WIDTH)
+        walk = placed if placed is not None else walk
     if walk is None:
         walk = _nearest(moves, asked, horizon, reach, rate)
         if walk is None or not nearest:
             raise ValueError(infeasible(keys, asked, walk, rate, answer.proved, _WHO))
     return path_of(graph, meshes, spots, walk, asked, _WHO)
+
+
+def _goal(
+    graph: MotionGraph,
+    meshes: Dataset[MeshSequence],
+    spots: list[Spot],
+    position: tuple[float, ...],
+    heading: float | None,
+    weights: tuple[float, float],
+) -> Goal:
+    """Where to end, in coordinates of the first take."""
+    if len(position) not in (0, 2):
+        raise ValueError(f"{_WHO}: position must be x, z in metres, or empty, got {len(position)} numbers")
+    takes = list(map(str, np.asarray(graph.takes)))
+    first, last = (
+        np.asarray(meshes[takes[spot.take]].vertices[spot.frame]) for spot in (spots[0], spots[-1])
+    )
+    start, end = (points[:, [0, 2]].mean(axis=0, dtype=np.float64) for points in (first, last))
+    place = start + np.array(position) if position else np.full(2, np.nan)
+    turned = align(first, last)[0].yaw
+    return Goal(place, np.nan if heading is None else heading + turned, *weights, end)
 
 
 def _nearest(moves: Moves, asked: Targets, horizon: int, reach: float, rate: float) -> Walk | None:

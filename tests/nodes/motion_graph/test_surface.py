@@ -113,3 +113,15 @@ def test_what_cannot_be_joined_is_said(scene: Scene) -> None:
         surface(similarity, {**meshes, "b": meshes["b"]._replace(fps=np.asarray(30.0, np.float32))})
     with pytest.raises(ValueError, match="matrix a, a must be"):
         surface(similarity, {**meshes, "a": meshes["a"]._replace(vertices=meshes["a"].vertices[:-1])})
+
+
+def test_a_take_of_three_frames_joins_nothing_and_is_said(scene: Scene) -> None:
+    short = {"only": _take(3, 0.0, 0.0, (0.0, 0.0))}
+    matrix = vertex_velocity((short["only"], short["only"]))
+    with pytest.raises(ValueError, match="no transition among takes only .* use longer takes"):
+        surface({("only", "only"): matrix}, short)
+    meshes = {**scene[1], "c": _take(3, 2.0, 0.0, (0.0, 0.0))}
+    graph = surface({(p, q): vertex_velocity((meshes[p], meshes[q])) for p in meshes for q in meshes}, meshes)
+    assert graph.takes.tolist() == ["a", "b", "c"]
+    assert 2 not in graph.source
+    assert 2 not in graph.target

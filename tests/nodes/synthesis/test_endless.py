@@ -46,3 +46,15 @@ def test_a_single_take_plays_on(meshes: Mapping[str, MeshSequence], graph: Motio
 def test_a_graph_without_a_loop_is_refused(graph: MotionGraph, meshes: Mapping[str, MeshSequence]) -> None:
     with pytest.raises(ValueError, match="no loop"):
         endless(graph._replace(core=np.zeros_like(graph.core)), meshes)
+
+
+def test_an_hour_never_dies(graph: MotionGraph, meshes: Mapping[str, MeshSequence]) -> None:
+    path = endless(graph, meshes, seconds=3600.0, seed=3)
+    assert len(path.provenance.take) == 90_000
+    frame, take = np.asarray(path.provenance.source_frame), np.asarray(path.provenance.take)
+    whole = np.asarray(path.provenance.weight)[:, 0] == 1.0
+    # captured frames play on one by one, and a minute never goes by in a single take
+    on = whole[1:] & whole[:-1] & (take[1:, 0] == take[:-1, 0])
+    assert set(np.diff(frame[:, 0])[on].tolist()) <= {1}
+    assert np.isfinite(path.provenance.offset).all()
+    assert len(np.unique(path.transition)) >= 0.5 * int(np.asarray(graph.core).sum())

@@ -3,6 +3,7 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
+from reperform.nodes.kernels.ground_plane import align
 from reperform.nodes.products.mesh import MeshSequence
 from reperform.nodes.products.motion import MotionGraph
 from reperform.nodes.synthesis.animate import animate
@@ -105,3 +106,38 @@ def test_key_frames_that_cannot_be_joined_are_named(
     )
     with pytest.raises(ValueError, match="no walk through the graph shows slow:3, fast:9"):
         key_frames(alone, meshes, start="slow:3", end="fast:9")
+
+
+def test_position_and_heading_draw_the_end_to_them(
+    graph: MotionGraph, meshes: Mapping[str, MeshSequence]
+) -> None:
+    ends = {
+        "start": "slow:3",
+        "end": "turn:40",
+        "duration": 7.0,
+        "duration_tolerance": 1.0,
+        "duration_weight": 0.1,
+    }
+    free = animate(key_frames(graph, meshes, **ends), meshes).mesh.vertices
+    first = free[0]
+
+    def off(vertices: np.ndarray, place: np.ndarray, turn: float) -> tuple[float, float]:
+        gone = (vertices[-1] - first).mean(axis=0)[[0, 2]]
+        turned = -align(first, vertices[-1])[0].yaw
+        return float(np.linalg.norm(gone - place)), float(abs((turned - turn + np.pi) % (2 * np.pi) - np.pi))
+
+    gains: list[float] = []
+    for place, turn in (((1.0, 3.0), -1.0), ((-2.0, 2.0), -2.5)):
+        path = key_frames(
+            graph, meshes, **ends, position=place, heading=turn, position_weight=30.0, heading_weight=10.0
+        )
+        directed = off(animate(path, meshes).mesh.vertices, np.array(place), turn)
+        undirected = off(free, np.array(place), turn)
+        gained = 30 * (undirected[0] - directed[0]) + 10 * (undirected[1] - directed[1])
+        assert gained >= -1e-6
+        gains.append(gained)
+        assert path.cost >= 30 * directed[0] + 10 * directed[1] - 0.02
+        assert path.cost >= path.bound
+    assert max(gains) > 1.0
+    with pytest.raises(ValueError, match="position must be x, z in metres"):
+        key_frames(graph, meshes, **ends, position=(1.0, 2.0, 3.0))
