@@ -118,7 +118,7 @@ def test_what_cannot_be_joined_is_said(scene: Scene) -> None:
 def test_a_take_of_three_frames_joins_nothing_and_is_said(scene: Scene) -> None:
     short = {"only": _take(3, 0.0, 0.0, (0.0, 0.0))}
     matrix = vertex_velocity((short["only"], short["only"]))
-    with pytest.raises(ValueError, match="no transition among takes only .* use longer takes"):
+    with pytest.raises(ValueError, match=r"no transition among takes only .* use longer takes"):
         surface({("only", "only"): matrix}, short)
     meshes = {**scene[1], "c": _take(3, 2.0, 0.0, (0.0, 0.0))}
     graph = surface({(p, q): vertex_velocity((meshes[p], meshes[q])) for p in meshes for q in meshes}, meshes)

@@ -53,7 +53,7 @@ def test_an_hour_never_dies(graph: MotionGraph, meshes: Mapping[str, MeshSequenc
     assert len(path.provenance.take) == 90_000
     frame, take = np.asarray(path.provenance.source_frame), np.asarray(path.provenance.take)
     whole = np.asarray(path.provenance.weight)[:, 0] == 1.0
-    # captured frames play on one by one, and a minute never goes by in a single take
+    # captured frames of one take play on one by one
     on = whole[1:] & whole[:-1] & (take[1:, 0] == take[:-1, 0])
     assert set(np.diff(frame[:, 0])[on].tolist()) <= {1}
     assert np.isfinite(path.provenance.offset).all()
