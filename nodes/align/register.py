@@ -10,7 +10,8 @@ from threadpoolctl import threadpool_limits
 from reperform.nodes.align.frame_views import FrameViews
 from reperform.nodes.declaration import Param, node
 from reperform.nodes.kernels.closest_point import closest_points
-from reperform.nodes.kernels.mesh_geometry import edges, face_areas, volume
+from reperform.nodes.kernels.geodesic_reach import geodesic_reach
+from reperform.nodes.kernels.mesh_geometry import edges
 from reperform.nodes.kernels.registration import (
     Pull,
     Stage,
@@ -51,7 +52,7 @@ def register(
     *,
     root: Annotated[
         Literal["spread", "tree"],
-        Param(about="spread: the frame whose surface shows most; tree: the tree's own root"),
+        Param(about="spread: the frame whose limbs are clear of each other; tree: the tree's own root"),
     ] = "spread",
     route: Annotated[
         Literal["takes", "tree"],
@@ -176,12 +177,14 @@ def _frames(surfaces: Dataset[Surfaces], tree: ShapeTree) -> list[_Frame]:
 
 
 def _most_spread(frames: list[_Frame], order: np.ndarray) -> int:
-    """The frame with most surface for its volume, less 2 % per handle; ties to the one visited first."""
+    """The frame whose surface reaches farthest along itself (`geodesic_reach`), so that fewest limbs are joined.
+
+    Less 2 % per handle; ties to the one visited first.
+    """
     scores = []
     for frame in frames:
         handles = max(1 - (len(frame.vertices) - len(frame.faces) // 2) / 2, 0)
-        size = max(float(volume(frame.vertices, frame.faces)), 1e-9) ** (2 / 3)
-        scores.append(float(face_areas(frame.vertices, frame.faces).sum()) / size * 0.98**handles)
+        scores.append(geodesic_reach(frame.vertices, frame.faces) * 0.98**handles)
     return int(order[np.argmax(np.array(scores)[order])])
 
 
