@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Sequence
+from time import perf_counter
 from typing import NamedTuple
 
 import numpy as np
@@ -36,7 +37,7 @@ def enumerate_pieces(moves: Moves, horizon: int, walks: int, loops: int) -> Piec
     return Pieces(found, _loops(moves, horizon, loops, reached))
 
 
-def solve_programme(moves: Moves, pieces: Pieces, targets: Targets) -> Walk | None:
+def solve_programme(moves: Moves, pieces: Pieces, targets: Targets, seconds: float = np.inf) -> Walk | None:
     """The cheapest walk within the tolerances; None where there is none.
 
         minimise  c . n + distance_weight |d . n - d_V| + steps_weight |t . n - t_V|,   n_0 = 1, n_i = 0, 1, 2, ...
@@ -45,19 +46,21 @@ def solve_programme(moves: Moves, pieces: Pieces, targets: Targets) -> Walk | No
     variables, bounded by the tolerances. Loops that hang on nothing are cut off: every loop of a set S that meets neither
     the walk nor itself elsewhere needs one outside that meets S. The pieces are strung to one walk (Hierholzer).
 
+    Raises TimeoutError where that takes longer than `seconds`.
+
     Source: Huang, Tejera, Collomosse and Hilton 2015, ACM TOG (000 eqs 14-25).
     Departure: targets are subtracted once, not once per loop (eq 24), and loops must connect to the walk.
     """
     columns = np.array([_sums(moves, loop) for loop in pieces.loops]).reshape(-1, 3)
     states = [_states(moves, loop) for loop in pieces.loops]
     best: tuple[float, list[int]] | None = None
+    until = perf_counter() + seconds
     for walk in sorted(pieces.walks, key=lambda walk: float(_sums(moves, walk)[0])):
         own = _sums(moves, walk)
         if best is not None and own[0] >= best[0]:
             break
-        found = _repetitions(
-            own, columns, states, _states(moves, walk), targets, np.inf if best is None else best[0]
-        )
+        under = np.inf if best is None else best[0]
+        found = _repetitions(own, columns, states, _states(moves, walk), targets, under, until)
         if found is not None and (best is None or found[0] < best[0]):
             best = found[0], _strung(moves, walk, pieces.loops, found[1])
     if best is None:
@@ -75,6 +78,7 @@ def _repetitions(
     seen: set[int],
     targets: Targets,
     under: float,
+    until: float,
 ) -> tuple[float, np.ndarray] | None:
     """Total cost and how often each loop is taken, for one loop-free walk; None where nothing under `under`."""
     count = len(loops)
@@ -84,9 +88,13 @@ def _repetitions(
     whole = np.concatenate([np.ones(count), np.zeros(2)])
     for _ in range(_CUTS):
         constraints = LinearConstraint(np.array(rows), -np.inf, np.array(upper)) if rows else ()
-        solved = milp(
-            objective, integrality=whole, bounds=bounds, constraints=constraints, options={"mip_rel_gap": 0.0}
-        )
+        left = until - perf_counter()
+        if left <= 0:
+            raise TimeoutError("key frames: the integer programmes took longer than allowed")
+        options = {"mip_rel_gap": 0.0} | ({"time_limit": left} if np.isfinite(left) else {})
+        solved = milp(objective, integrality=whole, bounds=bounds, constraints=constraints, options=options)
+        if solved.status == 1:
+            raise TimeoutError("key frames: the integer programmes took longer than allowed")
         if solved.x is None or solved.fun + walk[0] >= under:
             return None
         times = np.rint(solved.x[:count]).astype(int)

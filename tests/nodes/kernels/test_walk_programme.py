@@ -53,3 +53,10 @@ def test_too_many_pieces_are_refused() -> None:
         enumerate_pieces(moves, 60, 1, 1000)
     with pytest.raises(ValueError, match="loops: keep fewer"):
         enumerate_pieces(moves, 60, 1000, 1)
+
+
+def test_time_that_runs_out_is_said() -> None:
+    moves = lay_out(*random_graph(5), KEYS)
+    targets = Targets(1.5, 40.0, 3.3, 0.1, 0.5, 15.0)
+    with pytest.raises(TimeoutError, match="longer than allowed"):
+        solve_programme(moves, enumerate_pieces(moves, 60, 1000, 1000), targets, seconds=0.0)
