@@ -18,6 +18,15 @@ class SkeletonSequence(NamedTuple):
     fps: Annotated[np.ndarray, Axes(dtype="float32", unit="Hz")]
 
 
+class BoneRotations(NamedTuple):
+    """How far every joint's bones are turned from rest, in the world, over time."""
+
+    rotation: Annotated[np.ndarray, Axes("frame", "joint", "3", "3")]
+    # -1 for the root; parents come before children
+    parents: Annotated[np.ndarray, Axes("joint", dtype="int32")]
+    fps: Annotated[np.ndarray, Axes(dtype="float32", unit="Hz")]
+
+
 class Contacts(NamedTuple):
     """Which foot is planted on the ground."""
 
@@ -26,9 +35,10 @@ class Contacts(NamedTuple):
 
 
 class Performance(NamedTuple):
-    """What a virtual actor really did: mesh, what is painted on it, joints and contacts."""
+    """What a virtual actor really did: mesh, what is painted on it, joints, contacts and the bones' rotations."""
 
     mesh: MeshSequence
     texture: TextureAtlas
     skeleton: SkeletonSequence
     contacts: Contacts
+    bones: BoneRotations

@@ -13,8 +13,9 @@ from reperform.nodes.kernels.gltf_animation import clip_seconds, find_clip, samp
 from reperform.nodes.kernels.gltf_file import Gltf, by_depth, global_matrices, node_parents, read_glb
 from reperform.nodes.kernels.gltf_surface import RiggedSurface, rigged_surface
 from reperform.nodes.kernels.planted_feet import planted_feet
+from reperform.nodes.kernels.rotation import polar
 from reperform.nodes.products.mesh import MeshSequence, TextureAtlas
-from reperform.nodes.products.performance import Contacts, Performance, SkeletonSequence
+from reperform.nodes.products.performance import BoneRotations, Contacts, Performance, SkeletonSequence
 
 
 @node(over="take", memory=1.0)
@@ -76,6 +77,7 @@ def character(
         TextureAtlas(surface.uv, surface.faces_uv, surface.image),
         SkeletonSequence(joints.astype(np.float32), joint_parents, np.array(names), rate),
         Contacts(_contacts(joints, names, fps)),
+        BoneRotations(_rotations(world[:, order], place / size), joint_parents, rate),
     )
 
 
@@ -110,6 +112,12 @@ def _joints(gltf: Gltf, parents: np.ndarray) -> tuple[list[int], np.ndarray]:
 def _placement(heading: float, size: float) -> np.ndarray:
     cos, sin = np.cos(heading), np.sin(heading)
     return size * np.array([[cos, 0, -sin], [0, 1, 0], [sin, 0, cos]])
+
+
+def _rotations(world: np.ndarray, place: np.ndarray) -> np.ndarray:
+    """Rotations (T, B, 3, 3) of joints by their matrices (T, B, 4, 4), without scale, turned as the character is."""
+    turned, _ = polar(world[..., :3, :3])
+    return np.asarray(place.T @ turned, np.float32)
 
 
 def _contacts(joints: np.ndarray, names: list[str], fps: float) -> np.ndarray:

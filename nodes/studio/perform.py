@@ -9,7 +9,7 @@ import numpy as np
 from reperform.nodes.declaration import Param, node
 from reperform.nodes.kernels.skinning import skin_dual_quaternion
 from reperform.nodes.products.mesh import MeshSequence, TextureAtlas
-from reperform.nodes.products.performance import Contacts, Performance, SkeletonSequence
+from reperform.nodes.products.performance import BoneRotations, Contacts, Performance, SkeletonSequence
 from reperform.nodes.studio.actor import build_actor
 from reperform.nodes.studio.actor_parts import Costume
 from reperform.nodes.studio.actor_skeleton import NAMES, PARENTS, REFERENCE_STATURE, REST_JOINTS
@@ -74,6 +74,7 @@ def perform(
         TextureAtlas(actor.uv, actor.faces_uv, actor.image),
         SkeletonSequence((joints[frames] * size).astype(np.float32), PARENTS, np.array(NAMES), rate),
         Contacts(plan.planted[frames]),
+        BoneRotations(rotation[frames].astype(np.float32), PARENTS, rate),
     )
 
 

@@ -16,7 +16,7 @@ from reperform.nodes.kernels.chart_atlas import chart_atlas, fill_gutters, texel
 from reperform.nodes.kernels.planted_feet import planted_feet
 from reperform.nodes.kernels.rasterise import interpolate
 from reperform.nodes.products.mesh import MeshSequence, TextureAtlas
-from reperform.nodes.products.performance import Contacts, Performance, SkeletonSequence
+from reperform.nodes.products.performance import BoneRotations, Contacts, Performance, SkeletonSequence
 
 Arrays = dict[str, np.ndarray]
 
@@ -45,7 +45,9 @@ def twin(
     """
     root = Path(folder)
     rest = _load(root / "rest.npz", ("vertices", "faces", "uv", "faces_uv"))
-    motion = _load(_clip_file(root, clip), ("vertices", "joints", "joint_names", "joint_parents", "fps"))
+    motion = _load(
+        _clip_file(root, clip), ("vertices", "joints", "joint_names", "joint_parents", "transforms", "fps")
+    )
     atlas = _picture(root / "atlas.png")
     clothed = TextureAtlas(rest["uv"].astype(np.float32), rest["faces_uv"].astype(np.int32), atlas)
     if watertight:
@@ -73,6 +75,11 @@ def twin(
             joints.astype(np.float32), motion["joint_parents"].astype(np.int32), np.array(names), rate
         ),
         Contacts(planted_feet(joints[:, _feet(names)], float(rate))),
+        BoneRotations(
+            motion["transforms"][span, :, :, :3].astype(np.float32),
+            motion["joint_parents"].astype(np.int32),
+            rate,
+        ),
     )
 
 

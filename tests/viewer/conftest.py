@@ -17,7 +17,7 @@ from reperform.nodes.products.measure_comparison import MeasureComparison
 from reperform.nodes.products.mesh import MeshSequence, Occupancy, Surfaces, TextureAtlas
 from reperform.nodes.products.mocap import Mocap, SkeletalAnimation
 from reperform.nodes.products.motion import Dissimilarity, MotionGraph, MotionPath, Provenance, ShapeTree
-from reperform.nodes.products.performance import Contacts, Performance, SkeletonSequence
+from reperform.nodes.products.performance import BoneRotations, Contacts, Performance, SkeletonSequence
 from reperform.nodes.products.table import Table
 from reperform.nodes.products.target_grid import TargetGrid
 from reperform.nodes.ragged import Ragged
@@ -217,6 +217,8 @@ def make_products() -> dict[str, Any]:
     grown = np.zeros((14, 18, 9), np.float32)
     grown[3:8, 2:15, 1:7] = 0.7
     eye = cameras(6)
+    count = len(skeleton.parents)
+    bones = BoneRotations(np.tile(np.eye(3, dtype=np.float32), (12, count, 1, 1)), skeleton.parents, FPS)
     return {
         "footage": Footage(images, FPS),
         "plate": CleanPlate(images[0].astype(np.float32), np.full((3, 45, 80, 3), 5, np.float32)),
@@ -227,7 +229,7 @@ def make_products() -> dict[str, Any]:
         ),
         "surfaces": Surfaces(Ragged([mesh.vertices[0], small[0]]), Ragged([mesh.faces, small[1]]), FPS),
         "mesh": mesh,
-        "performance": Performance(mesh, atlas, skeleton, Contacts(np.zeros((12, 2), bool))),
+        "performance": Performance(mesh, atlas, skeleton, Contacts(np.zeros((12, 2), bool)), bones),
         "skeleton": skeleton,
         "mocap": mocap,
         "skeletal_animation": SkeletalAnimation(mocap, path().provenance),

@@ -10,7 +10,7 @@ from reperform.nodes.products.clips import Clips
 from reperform.nodes.products.footage import Film, Footage, Mattes
 from reperform.nodes.products.mesh import MeshSequence, Surfaces, TextureAtlas
 from reperform.nodes.products.motion import Animation, Dissimilarity, Provenance
-from reperform.nodes.products.performance import Contacts, Performance, SkeletonSequence
+from reperform.nodes.products.performance import BoneRotations, Contacts, Performance, SkeletonSequence
 from reperform.nodes.products.table import Table
 from reperform.nodes.ragged import Ragged
 
@@ -54,7 +54,8 @@ def performance() -> Performance:
     )
     joints = np.stack([np.array([[0, 1, 0], [0, 1.5, 0.1]]) + k for k in range(3)]).astype(np.float32)
     skeleton = SkeletonSequence(joints, np.array([-1, 0], np.int32), np.array(["hips", "head"]), FPS)
-    return Performance(mesh, atlas, skeleton, Contacts(np.zeros((3, 2), bool)))
+    bones = BoneRotations(np.tile(np.eye(3, dtype=np.float32), (3, 2, 1, 1)), skeleton.parents, FPS)
+    return Performance(mesh, atlas, skeleton, Contacts(np.zeros((3, 2), bool)), bones)
 
 
 def film(frames: int = 5) -> Film:

@@ -155,3 +155,12 @@ def test_the_skirt_moves_after_the_body():
 def test_the_same_twice(takes):
     again = perform(motion="jog", seconds=1.4)
     assert np.array_equal(again.mesh.vertices, takes["jog"].mesh.vertices)
+
+
+def test_bones_turn_with_the_joints_they_hang_on():
+    take = perform(motion="dance", costume="jacket", seconds=0.8)
+    joints, rotation, parents = take.skeleton.joints, take.bones.rotation, take.bones.parents
+    child = np.flatnonzero(parents >= 0)
+    way = joints[:, child] - joints[:, parents[child]]
+    at_rest = np.einsum("tkji,tkj->tki", rotation[:, parents[child]], way)
+    np.testing.assert_allclose(at_rest, np.broadcast_to(at_rest[:1], at_rest.shape), atol=1e-4)
