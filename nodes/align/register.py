@@ -11,7 +11,7 @@ from reperform.nodes.align.frame_views import FrameViews
 from reperform.nodes.declaration import Param, node
 from reperform.nodes.kernels.closest_point import closest_points
 from reperform.nodes.kernels.geodesic_reach import geodesic_reach
-from reperform.nodes.kernels.mesh_geometry import edges
+from reperform.nodes.kernels.mesh_geometry import edges, face_areas, volume
 from reperform.nodes.kernels.registration import (
     Pull,
     Stage,
@@ -51,8 +51,11 @@ def register(
     cameras: Dataset[Cameras] | None = None,
     *,
     root: Annotated[
-        Literal["spread", "tree"],
-        Param(about="spread: the frame whose limbs are clear of each other; tree: the tree's own root"),
+        Literal["spread", "reach", "tree"],
+        Param(
+            about="spread: the frame whose surface shows most; reach: whose surface reaches farthest along itself, for "
+            "arms that lie against loose clothes; tree: the tree's own root"
+        ),
     ] = "spread",
     route: Annotated[
         Literal["takes", "tree"],
@@ -109,8 +112,8 @@ def register(
         raise ValueError(f"register: footage and cameras go together, got {given} only: wire {missing} too")
     frames = _frames(surfaces, tree)
     parent, order = np.asarray(tree.parent), np.asarray(tree.order)
-    if root == "spread":
-        parent, order = rehang(parent, _most_spread(frames, order))
+    if root != "tree":
+        parent, order = rehang(parent, _most_spread(frames, order, root))
     if route == "takes":
         parent, order = chain_takes(tree.take, tree.frame_index, tree.parent, tree.distance, int(order[0]))
     first = frames[order[0]]
@@ -176,15 +179,17 @@ def _frames(surfaces: Dataset[Surfaces], tree: ShapeTree) -> list[_Frame]:
     ]
 
 
-def _most_spread(frames: list[_Frame], order: np.ndarray) -> int:
-    """The frame whose surface reaches farthest along itself (`geodesic_reach`), so that fewest limbs are joined.
-
-    Less 2 % per handle; ties to the one visited first.
-    """
+def _most_spread(frames: list[_Frame], order: np.ndarray, root: str) -> int:
+    """The frame with most surface for its volume, or that reaches farthest; less 2 % per handle; ties to the first."""
     scores = []
     for frame in frames:
         handles = max(1 - (len(frame.vertices) - len(frame.faces) // 2) / 2, 0)
-        scores.append(geodesic_reach(frame.vertices, frame.faces) * 0.98**handles)
+        if root == "reach":
+            score = geodesic_reach(frame.vertices, frame.faces)
+        else:
+            size = max(float(volume(frame.vertices, frame.faces)), 1e-9) ** (2 / 3)
+            score = float(face_areas(frame.vertices, frame.faces).sum()) / size
+        scores.append(score * 0.98**handles)
     return int(order[np.argmax(np.array(scores)[order])])
 
 
