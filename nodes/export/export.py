@@ -14,6 +14,7 @@ from reperform.nodes.export.gltf import write_sequence_glb, write_surfaces_glb
 from reperform.nodes.export.mesh_text import write_obj, write_ply
 from reperform.nodes.export.motion_graph import write_motion_graph
 from reperform.nodes.export.npz import write_npz
+from reperform.nodes.export.parametric_graph import write_parametric_graph
 from reperform.nodes.export.png import heat, tile, write_png
 from reperform.nodes.export.table import write_csv
 from reperform.nodes.export.usd import write_usd
@@ -24,6 +25,7 @@ from reperform.nodes.products.key_frame_table import KeyFrameTable
 from reperform.nodes.products.mesh import MeshSequence, Surfaces, TextureAtlas
 from reperform.nodes.products.mocap import Mocap, SkeletalAnimation
 from reperform.nodes.products.motion import Animation, Dissimilarity, MotionGraph
+from reperform.nodes.products.parametric import ParametricGraph
 from reperform.nodes.products.performance import Performance, SkeletonSequence
 from reperform.nodes.products.table import Table
 
@@ -52,6 +54,7 @@ def endings(kind: type) -> tuple[str, ...]:
         KeyFrameTable: (".csv",),
         MotionGraph: (".json", ".graphml"),
         PoseGraph: (".json", ".graphml"),
+        ParametricGraph: (".xml",),
     }
     return (*table.get(kind, ()), ".npz")
 
@@ -61,9 +64,9 @@ def write(product: Any, path: Path | str, name: str = "", picture: Picture | Non
 
     Films and footage: .mp4 (all cameras side by side), .png (one picture, or a sheet of up to 16 frames).
     Meshes: .glb and .usd hold all frames; .obj and .ply one mesh per file: for several frames the name must
-    have a place for the frame, as `mesh_%04d.obj` (.png takes that too). Skeletons .bvh, or .amc with an .asf, tables .csv,
-    graphs .json and .graphml,
-    matrices .png, anything .npz. Fields may be lazy: frames are read one at a time. name: of the object
+    have a place for the frame, as `mesh_%04d.obj` (.png takes that too). Skeletons .bvh, or .amc with an .asf,
+    tables .csv, graphs .json and .graphml, parametric graphs .xml, matrices .png, anything .npz. Fields may be lazy:
+    frames are read one at a time. name: of the object
     inside .glb and .usd. picture: draws other products as RGB uint8 for .png.
 
     Raises ValueError where the product cannot be written so; the message lists the endings that it can.
@@ -81,6 +84,8 @@ def write(product: Any, path: Path | str, name: str = "", picture: Picture | Non
         write_csv(path, product)
     elif ending in (".json", ".graphml"):
         write_motion_graph(path, product)
+    elif ending == ".xml":
+        write_parametric_graph(path, product)
     elif ending == ".bvh":
         write_bvh(path, _moving_skeleton(product))
     elif ending == ".amc":

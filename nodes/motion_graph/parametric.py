@@ -139,6 +139,10 @@ def _graph(
         references=np.array([len(control) for control in controls], np.int32),
         cells=np.array([len(cells) for cells in corners], np.int32),
         core=_core(source, target, len(names)),
+        takes=np.concatenate([np.asarray(spaces[name].takes) for name in names]),
+        take_space=np.repeat(
+            np.arange(len(names), dtype=np.int32), [len(spaces[name].takes) for name in names]
+        ),
         reference_control=np.concatenate(
             [np.pad(control, ((0, 0), (0, wide - control.shape[1]))) for control in controls]
         ),

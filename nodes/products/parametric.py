@@ -83,6 +83,9 @@ class ParametricGraph(NamedTuple):
     cells: Annotated[np.ndarray, Axes("space", dtype="int32")]
     # whether a walk over the edges can go on from here for ever, and come back
     core: Annotated[np.ndarray, Axes("space", dtype="bool")]
+    # takes of all spaces, and the space of each
+    takes: Annotated[np.ndarray, Axes("take", dtype="str")]
+    take_space: Annotated[np.ndarray, Axes("take", dtype="int32")]
     # controls of all references of all spaces; unused columns are 0. The first of a space are its inputs
     reference_control: Annotated[np.ndarray, Axes("reference", "control", dtype="float64")]
     # corners of all cells of all spaces among the references of their space; unused ones are -1
