@@ -31,5 +31,11 @@ class Played(NamedTuple):
     request_time: Annotated[np.ndarray, Axes("request", dtype="float64", unit="s")]
     request_space: Annotated[np.ndarray, Axes("request", dtype="int32")]
     latency: Annotated[np.ndarray, Axes("request", dtype="float64", unit="s")]
+    # parameters of all spaces: what the command of the frame asks and what the motion does (by the maps of the spaces,
+    # measured on their blends); nan where the space that is asked, or that plays, has no such parameter
+    parameters: Annotated[np.ndarray, Axes("parameter", dtype="str")]
+    units: Annotated[np.ndarray, Axes("parameter", dtype="str")]
+    asked: Annotated[np.ndarray, Axes("frame", "parameter", dtype="float64")]
+    done: Annotated[np.ndarray, Axes("frame", "parameter", dtype="float64")]
     # the way that was to be followed, x, z; empty where there was none
     way: Annotated[np.ndarray, Axes("sample", "2", dtype="float64", unit="m")]

@@ -124,6 +124,11 @@ class Character:
         return float(self.now.pose[0])
 
     @property
+    def control(self) -> np.ndarray:
+        """The controls (d,) of the space that plays."""
+        return self.now.control
+
+    @property
     def heading(self) -> float:
         """Where the motion goes, rad; the body sways about it."""
         sway = self._sway(self.now)

@@ -58,6 +58,9 @@ class CharacterData:
     source_frame: tuple[np.ndarray, ...]
     # (N, P + cyclic) per space: how far the body is turned from the heading at each pose, rad
     sway: tuple[np.ndarray, ...]
+    # per space what its blends do: controls (S, d) and values (S, d) of samples
+    samples: tuple[tuple[np.ndarray, np.ndarray], ...]
+    units: tuple[tuple[str, ...], ...]
 
     @property
     def vertices(self) -> int:
@@ -130,6 +133,11 @@ def character_data(graph: ParametricGraph, spaces: Mapping[str, ParametricSpace]
         take_of=tuple(np.arange(a, b) for a, b in pairwise(counts)),
         source_frame=tuple(np.asarray(space.source_frame, np.float64) for space in chosen),
         sway=tuple(_sway(space) for space in chosen),
+        samples=tuple(
+            (np.asarray(space.sample_weight) @ np.asarray(space.control), np.asarray(space.sample_value))
+            for space in chosen
+        ),
+        units=tuple(tuple(str(unit) for unit in np.asarray(space.units)) for space in chosen),
     )
 
 

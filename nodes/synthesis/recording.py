@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from reperform.nodes.kernels.parameter_values import values_at
 from reperform.nodes.products.mesh import MeshSequence
 from reperform.nodes.products.played import Played
 from reperform.nodes.synthesis.character import SOURCES, Character, Command
@@ -23,6 +24,9 @@ class Recording:
         self.weight = np.zeros((frames, SOURCES))
         self.space, self.pose, self.mix = np.zeros(frames, np.int32), np.zeros(frames), np.zeros(frames)
         self.planted, self.soles = np.zeros((frames, feet), bool), np.zeros((frames, feet, 3))
+        d = max(map(len, character.data.parameters))
+        self.asked, self.control = np.full((frames, d), np.nan), np.zeros((frames, d))
+        self.asked_space = np.zeros(frames, np.int32)
         self.requests: list[tuple[float, int, float]] = []
         self._number: int | None = None
 
@@ -39,6 +43,9 @@ class Recording:
         self.space[f], self.pose[f] = character.space, character.pose
         self.mix[f] = character.mix if character.blending else 1.0
         self.planted[f], self.soles[f] = character.resting, character.soles
+        self.asked[f, : len(command.values)] = command.values
+        self.asked_space[f] = command.space
+        self.control[f, : len(character.control)] = character.control
         if command.number != self._number:
             self._number = command.number
             self.requests.append((character.asked, command.space, np.nan))
@@ -51,13 +58,30 @@ class Recording:
         """What was recorded; way: the path that was to be followed (N, 2)."""
         data, part = self.character.data, slice(0, self.count)
         time, space, latency = (np.array(column) for column in zip(*self.requests, strict=True))
+        names, units, asked, done = self._parameters()
         return Played(
             MeshSequence(self.vertices[part], data.faces, np.array(self.fps, np.float32)),
             self.root[part], np.array(data.takes), self.take[part], self.moment[part], self.weight[part],
             np.array(data.names), self.space[part], self.pose[part], self.mix[part], self.planted[part],
             self.soles[part], time.astype(np.float64), space.astype(np.int32), latency.astype(np.float64),
-            np.zeros((0, 2)) if way is None else way,
+            names, units, asked, done, np.zeros((0, 2)) if way is None else way,
         )  # fmt: skip
+
+    def _parameters(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Names and units of all parameters; what was asked and what was done (frames, parameters)."""
+        data, frames = self.character.data, range(self.count)
+        units: dict[str, str] = {}
+        for owned, own_units in zip(data.parameters, data.units, strict=True):
+            units.update(zip(owned, own_units, strict=True))
+        column = {name: k for k, name in enumerate(units)}
+        asked, done = np.full((2, len(frames), len(units)), np.nan)
+        for s, owned in enumerate(data.parameters):
+            own = np.array([column[name] for name in owned])
+            wanted = np.flatnonzero(self.asked_space[: self.count] == s)
+            asked[np.ix_(wanted, own)] = self.asked[wanted, : len(own)]
+            played = np.flatnonzero(self.space[: self.count] == s)
+            done[np.ix_(played, own)] = values_at(self.control[played, : len(own)], *data.samples[s])
+        return np.array(list(units)), np.array(list(units.values())), asked, done
 
 
 def record(

@@ -32,6 +32,7 @@ from reperform.viewer.pictures.photographs import (
     mattes_picture,
     plate_picture,
 )
+from reperform.viewer.pictures.played import played_picture
 from reperform.viewer.pictures.pose_graph import pose_graph_picture, pose_transitions_picture
 from reperform.viewer.pictures.pose_walk import pose_walk_picture
 from reperform.viewer.pictures.pruning_report import pruned_graph_picture, pruning_report_picture
@@ -66,6 +67,7 @@ PAINTERS: dict[str, Painter] = {
     "TimeWarp": time_warp_picture,
     "ShapeTree": shape_tree_picture,
     "MotionPath": motion_path_picture,
+    "Played": played_picture,
     "PathCosts": path_costs_picture,
     "PoseGraph": pose_graph_picture,
     "PoseTransitions": pose_transitions_picture,
