@@ -177,7 +177,8 @@ def circling() -> Callable[[int, float, float], ParametricSpace]:
             np.array(["low", "high"]), vertices.astype(np.float32), np.zeros((2, poses, 3)), np.full((2, poses), seconds / poses),
             np.zeros((2, poses, 2), bool), np.zeros((2, poses)), np.asarray(True), np.array(["height"]), np.array(["m"]),
             two * 0.2, two, np.array([[0, 1]], np.int32), np.eye(2), two * 0.2, np.zeros(1), np.full(1, 0.2),
-            np.array([2], np.int32), two, np.zeros((1, 2)), np.array([-1, -1], np.int32), np.asarray(False), faces,
+            np.array([2], np.int32), two, np.zeros((1, 2)), np.array([-1, -1], np.int32),
+            np.array([-1, -1], np.int32), np.asarray(False), faces,
             np.asarray(25, np.float32),
         )  # fmt: skip
 

@@ -44,7 +44,7 @@ def play_parameters(
         for _ in range(count):
             cell = np.asarray(space.cells)[random.integers(len(space.cells))]
             asked = random.dirichlet(np.ones(len(cell))) @ reached[cell]
-            done = _played(data, s, asked, np.asarray(space.reach))
+            done = _played(data, s, asked, np.asarray(space.reach), np.asarray(space.hands))
             row = dict.fromkeys(entries, np.nan)
             for parameter, wanted, width in zip(names, asked, table.upper - table.lower, strict=True):
                 entry = parameter.partition("_")[0]
@@ -53,12 +53,14 @@ def play_parameters(
     return Measures(np.array(rows), np.array(entries), np.array(["1"] * len(entries)))
 
 
-def _played(data: CharacterData, s: int, asked: np.ndarray, reach: np.ndarray) -> Callable[[str], float]:
+def _played(
+    data: CharacterData, s: int, asked: np.ndarray, reach: np.ndarray, hands: np.ndarray
+) -> Callable[[str], float]:
     """What the character does when told so, parameter by parameter."""
     character = Character(data, s, values=asked)
     if data.spaces[s].cyclic:
         return _cycle(character, Command(s, asked, character.served))
-    return _once(character, Command(s, asked, character.served), reach)
+    return _once(character, Command(s, asked, character.served), reach, hands)
 
 
 def _cycle(character: Character, command: Command) -> Callable[[str], float]:
@@ -73,16 +75,19 @@ def _cycle(character: Character, command: Command) -> Callable[[str], float]:
     return {"speed": chord / np.sinc(turned / (2 * np.pi)) / seconds, "turning": turned / seconds}.__getitem__
 
 
-def _once(character: Character, command: Command, reach: np.ndarray) -> Callable[[str], float]:
+def _once(
+    character: Character, command: Command, reach: np.ndarray, hands: np.ndarray
+) -> Callable[[str], float]:
     space = character.data.spaces[command.space]
     start, pace = character.root.copy(), character.now.weights @ space.seconds
     rise = [float(character.vertices[:, 1].mean())]
-    hand = character.vertices[max(reach[0], 0)].astype(float)
+    hand, width = character.vertices[max(reach[0], 0)].astype(float), np.nan
     for k in range(space.poses - 1):
         character.perform(float(pace[k]))
         rise.append(float(character.vertices[:, 1].mean()))
         if k + 1 == reach[1]:
             hand = character.vertices[reach[0]].astype(float)
+            width = float(np.linalg.norm(np.subtract(*character.vertices[hands].astype(float))))
     ground = rotate_ground(hand[[0, 2]] - start[:2], -start[2])
     chord, turned = float(np.linalg.norm(character.root[:2] - start[:2])), float(character.root[2] - start[2])
     seconds = float(pace[:-1].sum())
@@ -92,4 +97,5 @@ def _once(character: Character, command: Command, reach: np.ndarray) -> Callable
         "height": max(rise) - rise[0],
         "length": chord,
         "reach_x": float(ground[0]), "reach_y": float(hand[1]), "reach_z": float(ground[1]),
+        "reach_width": width,
     }.__getitem__  # fmt: skip

@@ -9,9 +9,10 @@ import numpy as np
 from reperform.nodes.kernels.ground_plane import rotate_ground
 from reperform.nodes.kernels.root_frame import travel
 
-Parameter = Literal["speed", "turning", "height", "length", "reach_x", "reach_y", "reach_z"]
+Parameter = Literal["speed", "turning", "height", "length", "reach_x", "reach_y", "reach_z", "reach_width"]
 UNITS: dict[str, str] = {
     "speed": "m/s", "turning": "rad/s", "height": "m", "length": "m", "reach_x": "m", "reach_y": "m", "reach_z": "m",
+    "reach_width": "m",
 }  # fmt: skip
 
 
@@ -34,7 +35,7 @@ def measure(
     much as the body, so sway does not lengthen it.  turning: turn over duration, rad/s, left positive.
     height: greatest rise of the mean vertex over its first height, m.  length: distance of both ends, m.
     reach_x, _y, _z: where the marked vertex is at its pose, from the root at the first pose, m; reached (S, 3): the
-    same in the frame of the root at that pose.
+    same in the frame of the root at that pose. reach_width is told by two vertices, not by this.
     """
     steps = np.tensordot(weights, travelled.motion, 1)
     seconds = (weights @ travelled.seconds).sum(axis=1)

@@ -41,9 +41,10 @@ def measured_map(
     faces: np.ndarray,
     parameters: Sequence[str],
     marker: tuple[int, int],
+    hands: tuple[int, int],
     nonlinear: bool,
 ) -> Sampler:
-    """Parameters (S, d) of blends by weights (S, N)."""
+    """Parameters (S, d) of blends by weights (S, N); hands: the vertices that reach_width lies between."""
     travelled = Travelled(
         inputs.motion, inputs.seconds, inputs.vertices[..., 1].mean(axis=2, dtype=np.float64)
     )
@@ -53,12 +54,18 @@ def measured_map(
     blends = ReadyBlends(MeshBlender.build(posed[0], faces), posed) if reaching and nonlinear else None
 
     def sample(weights: np.ndarray) -> np.ndarray:
-        reached = np.zeros((len(weights), 3))
+        marks = np.zeros((3, len(weights), 3))
         if blends is not None:
-            reached = np.stack([blends.at(row)[vertex] for row in weights])
+            marks = np.stack([blends.at(row)[[vertex, *hands]] for row in weights], axis=1)
         elif reaching:
-            reached = weights @ np.stack(posed)[:, vertex]
-        columns = [measure(name, travelled, weights, reached, pose) for name in parameters]
+            marks = np.stack([weights @ np.stack(posed)[:, mark] for mark in (vertex, *hands)])
+        reached, *gripping = marks
+        columns = [
+            np.linalg.norm(gripping[0] - gripping[1], axis=1)
+            if name == "reach_width"
+            else measure(name, travelled, weights, reached, pose)
+            for name in parameters
+        ]
         return np.stack(columns, axis=1)
 
     return sample

@@ -8,6 +8,7 @@ import numpy as np
 
 from reperform.nodes.declaration import Param, node
 from reperform.nodes.kernels.control_cells import cells_of
+from reperform.nodes.kernels.hands_apart import hands_apart
 from reperform.nodes.kernels.motion_parameters import UNITS, Parameter
 from reperform.nodes.kernels.parameter_map import Method
 from reperform.nodes.kernels.parameter_samples import (
@@ -70,6 +71,9 @@ def space(
     Raises ValueError where takes are fewer than two or unknown, differ in topology or rate, do not repeat themselves
     though cyclic, key frames do not agree, a parameter does not vary, or the map cannot be inverted.
 
+    A reach is measured where the takes differ most: the place of a vertex from the root (reach_x, _y, _z), or the gap
+    between two hands (reach_width), as wide as the box that they would hold.
+
     Source: 001 sections 3.1-3.2, 004 section 3.2 (figs 3.1, 3.2).
     Departure: parameters are blended piecewise between neighbouring takes (Delaunay), so that more takes only make the
     map better; the inverse is monotone by default (polynomials of degree 3 as in 004 by choice).
@@ -103,7 +107,8 @@ def _mapped(
         if any(name.startswith("reach") for name in parameters)
         else (-1, -1)
     )
-    sampler = measured_map(inputs, faces, parameters, marker, blend == "nonlinear")
+    hands = hands_apart(inputs.vertices[:, marker[1]], marker[0]) if "reach_width" in parameters else (-1, -1)
+    sampler = measured_map(inputs, faces, parameters, marker, hands, blend == "nonlinear")
     value = sampler(np.eye(len(names)))
     span = np.ptp(value, axis=0)
     for name, low, wide in zip(parameters, value.min(axis=0), span, strict=True):
@@ -121,7 +126,8 @@ def _mapped(
         np.array(names), inputs.vertices, inputs.motion, inputs.seconds, inputs.planted, inputs.source_frame,
         np.asarray(cyclic), np.array(parameters), np.array([UNITS[name] for name in parameters]), value, control,
         corners, weights, samples, table.lower, table.upper, table.grid, table.inverse, error,
-        np.array(marker, np.int32), np.asarray(outside == "refuse"), faces, np.asarray(fps, np.float32),
+        np.array(marker, np.int32), np.array(hands, np.int32), np.asarray(outside == "refuse"), faces,
+        np.asarray(fps, np.float32),
     )  # fmt: skip
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.interpolate import LinearNDInterpolator
 
 from reperform.nodes.kernels.control_cells import blend_weights, framed
 from reperform.nodes.kernels.parameter_map import ParameterMap, controls_at
+from reperform.nodes.kernels.parameter_values import values_at
 from reperform.nodes.products.parametric import ParametricSpace
 
 # what is done may miss what is asked by this share of the range before it counts as out of reach
@@ -45,13 +45,7 @@ def done(space: ParametricSpace, weights: np.ndarray) -> np.ndarray:
     """Parameters (S, d) of blends with weights (S, N), between those that were measured."""
     inputs = np.asarray(space.control)
     sampled, value = np.asarray(space.sample_weight) @ inputs, np.asarray(space.sample_value)
-    control = np.atleast_2d(weights) @ inputs
-    if inputs.shape[1] == 1:
-        order = np.argsort(sampled[:, 0], kind="stable")
-        return np.interp(control[:, 0], sampled[order, 0], value[order, 0])[:, None]
-    # a hair towards the middle, so that corners are not outside by rounding
-    middle = sampled.mean(axis=0)
-    return np.asarray(LinearNDInterpolator(sampled, value)(middle + (1 - 1e-9) * (control - middle)))
+    return values_at(np.atleast_2d(weights) @ inputs, sampled, value)
 
 
 def _require_reached(

@@ -39,7 +39,7 @@ class ParametricSpace(NamedTuple):
     # the captured frame (not whole) that each pose shows
     source_frame: Annotated[np.ndarray, Axes("input", "pose", dtype="float64", unit="frame")]
     cyclic: Annotated[np.ndarray, Axes(dtype="bool")]
-    # what the user controls: speed, turning, height, length, reach_x, reach_y, reach_z
+    # what the user controls: speed, turning, height, length, reach_x, reach_y, reach_z, reach_width
     parameters: Annotated[np.ndarray, Axes("parameter", dtype="str")]
     units: Annotated[np.ndarray, Axes("parameter", dtype="str")]
     # of the inputs as they are
@@ -61,6 +61,8 @@ class ParametricSpace(NamedTuple):
     inverse_error: Annotated[np.ndarray, Axes("parameter", "2", dtype="float64")]
     # the vertex and pose that `reach` measures; -1 where it does not
     reach: Annotated[np.ndarray, Axes("2", dtype="int32")]
+    # the vertices that `reach_width` lies between, at the pose of `reach`; -1 where it is not measured
+    hands: Annotated[np.ndarray, Axes("2", dtype="int32")]
     # whether values out of reach are refused (else clamped)
     refuse: Annotated[np.ndarray, Axes(dtype="bool")]
     faces: Annotated[np.ndarray, Axes("face", "3", dtype="int32")]

@@ -114,7 +114,7 @@ def jump(stand: Plan, time: np.ndarray, seconds: float, height: float, length: f
 
 def reach_high(stand: Plan, time: np.ndarray, seconds: float, amount: float) -> Plan:
     """The right hand goes up, the eyes follow, then the heels rise; amount in [0, 1]."""
-    go = _there_and_back(time, seconds, 0.42)
+    go = there_and_back(time, seconds, 0.42)
     arms = stand.arms.copy()
     arms[:, 1, 0] += amount * 2.75 * go
     arms[:, 1, 1] += 0.18 * np.sin(np.pi * go) * amount
@@ -134,7 +134,7 @@ def reach_high(stand: Plan, time: np.ndarray, seconds: float, amount: float) -> 
 
 def reach_low(stand: Plan, time: np.ndarray, seconds: float, amount: float) -> Plan:
     """The actor bends knees and back and reaches for the floor with the right hand; amount in [0, 1]."""
-    go = _there_and_back(time, seconds, 0.46)
+    go = there_and_back(time, seconds, 0.46)
     bend = amount * go
     zero = np.zeros_like(go)
     arms = stand.arms.copy()
@@ -185,7 +185,7 @@ def punch(stand: Plan, time: np.ndarray, seconds: float, amount: float) -> Plan:
 
 def duck(stand: Plan, time: np.ndarray, seconds: float, amount: float) -> Plan:
     """Down under something and up again; amount in [0, 1]."""
-    go = _there_and_back(time, seconds, 0.42) * amount
+    go = there_and_back(time, seconds, 0.42) * amount
     zero = np.zeros_like(go)
     arms = stand.arms.copy()
     arms[:, :, 0] += (0.55 * go)[:, None]
@@ -241,7 +241,7 @@ def dance(stand: Plan, time: np.ndarray, seconds: float, amount: float) -> Plan:
 def amount_for(
     gesture: Callable[[float], Plan], bone: str, height: float, highest: bool, what: str, frames: np.ndarray
 ) -> float:
-    """The amount in [0, 1] at which a joint's extreme height over the take is `height` (m), by bisection.
+    """The amount in [0, 1] at which a joint's extreme height over the take is `height` (m).
 
     Raises ValueError with the range where it cannot be reached.
     """
@@ -252,23 +252,31 @@ def amount_for(
         level = solve(part)[1][:, BONE[bone], 1]
         return float(level.max() if highest else level.min())
 
-    low, high = extreme(0.0), extreme(1.0)
-    if not min(low, high) <= height <= max(low, high):
+    return amount_that_gives(extreme, height, what)
+
+
+def amount_that_gives(measure: Callable[[float], float], wanted: float, what: str) -> float:
+    """The amount in [0, 1] at which a monotone measure (m) is as wanted, by bisection.
+
+    Raises ValueError with the range where it cannot be reached.
+    """
+    low, high = measure(0.0), measure(1.0)
+    if not min(low, high) <= wanted <= max(low, high):
         raise ValueError(
             f"studio.perform: {what} must be {min(low, high):.2f} .. {max(low, high):.2f} m for an actor of the "
-            f"reference stature, got {height:.2f} m: choose a height in this range, or 0 for the motion's own"
+            f"reference stature, got {wanted:.2f} m: choose a {what} in this range, or 0 for the motion's own"
         )
     lower, upper = 0.0, 1.0
     for _ in range(14):
         middle = 0.5 * (lower + upper)
-        if (extreme(middle) < height) == (high > low):
+        if (measure(middle) < wanted) == (high > low):
             lower = middle
         else:
             upper = middle
     return 0.5 * (lower + upper)
 
 
-def _there_and_back(time: np.ndarray, seconds: float, peak: float) -> np.ndarray:
+def there_and_back(time: np.ndarray, seconds: float, peak: float) -> np.ndarray:
     """0 at both ends of the take, 1 round the time peak * seconds."""
     out = smoothstep((time / seconds - 0.06) / (peak - 0.06))
     return np.clip(out * (1 - smoothstep((time / seconds - peak - 0.10) / (0.84 - peak))), 0, 1)

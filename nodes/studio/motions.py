@@ -9,12 +9,13 @@ import numpy as np
 
 from reperform.nodes.studio import gestures
 from reperform.nodes.studio.gait import RESTING_PHASE, locomotion, smoothstep, style_at
+from reperform.nodes.studio.grab import grab
 from reperform.nodes.studio.pose_plan import Plan
 
 Motion = Literal[
     "stand", "walk", "jog", "turn_left", "turn_right", "stand_to_walk", "walk_to_stand", "walk_to_jog",
-    "jog_to_walk", "jump_high", "jump_low", "jump_long", "jump_short", "reach_high", "reach_low", "punch", "duck",
-    "dance",
+    "jog_to_walk", "jump_high", "jump_low", "jump_long", "jump_short", "reach_high", "reach_low", "grab", "punch",
+    "duck", "dance",
 ]  # fmt: skip
 # seconds planned before and after the take, so that footsteps and cloth have a past and a future
 MARGIN = 2.0
@@ -22,11 +23,11 @@ MARGIN = 2.0
 
 def plan_motion(
     motion: Motion, seconds: float, rate: float, walk: float, jog: float, turn: float, phase: float, height: float,
-    length: float,
+    length: float, width: float,
 ) -> Plan:  # fmt: skip
     """The plan of a take, `rate` samples a second from -MARGIN to seconds + MARGIN.
 
-    Height and length are in m at the reference stature; 0: the motion's own.
+    Height, length and width are in m at the reference stature; 0: the motion's own.
     """
     start = round(MARGIN * rate)
     time = np.arange(-start, round((seconds + MARGIN) * rate) + 1) / rate
@@ -38,11 +39,11 @@ def plan_motion(
     elif not speed[start] > 0:
         phase = RESTING_PHASE
     plan = locomotion(time, speed, np.full(len(time), turning), phase, start)
-    return _gesture(motion, plan, time, seconds, height, length)
+    return _gesture(motion, plan, time, seconds, height, length, width)
 
 
 def _gesture(
-    motion: Motion, stand: Plan, time: np.ndarray, seconds: float, height: float, length: float
+    motion: Motion, stand: Plan, time: np.ndarray, seconds: float, height: float, length: float, width: float
 ) -> Plan:
     """What is done on top of standing; other motions come back as they are."""
     frames = np.flatnonzero((time >= 0) & (time <= seconds))[::4]
@@ -59,6 +60,8 @@ def _gesture(
             return _reaching(gestures.reach_high, stand, time, seconds, "right_hand", height, True, frames)
         case "reach_low":
             return _reaching(gestures.reach_low, stand, time, seconds, "right_hand", height, False, frames)
+        case "grab":
+            return grab(stand, time, seconds, width)
         case "punch":
             return _reaching(gestures.punch, stand, time, seconds, "right_hand", height, True, frames)
         case "duck":

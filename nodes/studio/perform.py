@@ -36,6 +36,9 @@ def perform(
         Param("m", 0.0, 2.4, "of a jump's rise, a reaching hand or a ducking head; 0: the motion's own"),
     ] = 0.0,
     length: Annotated[float, Param("m", 0.0, 2.5, "of a jump; 0: the motion's own")] = 0.0,
+    width: Annotated[
+        float, Param("m", 0.0, 2.0, "between the hands of a grab (joints); 0: the motion's own")
+    ] = 0.0,
     phase: Annotated[float, Param("cycle", 0.0, 1.0, "where in the gait cycle the take starts")] = 0.0,
     heading: Annotated[float, Param("rad", -7.0, 7.0, "turns the whole take about the vertical")] = 0.0,
     stature: Annotated[float, Param("m", 1.2, 2.1, "height of the actor, without lifting the arms")] = 1.72,
@@ -59,7 +62,8 @@ def perform(
     size = stature / REFERENCE_STATURE
     finer = int(np.ceil(FINEST / fps))
     plan = plan_motion(
-        motion, seconds, fps * finer, walk_speed / size, jog_speed / size, turn, phase, height / size, length / size
+        motion, seconds, fps * finer, walk_speed / size, jog_speed / size, turn, phase, height / size, length / size,
+        width / size,
     )  # fmt: skip
     frames = round(MARGIN * fps * finer) + finer * np.arange(max(2, round(seconds * fps)))
     plan = _centred(plan, frames, heading)

@@ -28,7 +28,7 @@ def bending(angles: np.ndarray, control: np.ndarray, cells: list[list[int]], lea
         np.full((n, POSES), 0.1), np.zeros((n, POSES, 2), bool), np.zeros((n, POSES)), np.asarray(True),
         np.array(["speed", "turning"][:d]), np.array(["m/s", "rad/s"][:d]), control, control, np.array(cells, np.int32),
         np.eye(n), control, np.zeros(d), np.ones(d), np.full(d, 2, np.int32), np.zeros((2**d, d)), np.zeros((d, 2)),
-        np.array([-1, -1], np.int32), np.asarray(False), faces, np.asarray(25, np.float32),
+        np.array([-1, -1], np.int32), np.array([-1, -1], np.int32), np.asarray(False), faces, np.asarray(25, np.float32),
     )  # fmt: skip
 
 

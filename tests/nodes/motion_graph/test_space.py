@@ -100,6 +100,27 @@ def test_a_reach_is_measured_at_the_marked_vertex(takes):
     assert made.value[:, 0] == pytest.approx(made.vertices[:, pose, vertex, 1])
 
 
+def test_a_width_is_the_gap_between_two_hands(takes):
+    """Two vertices go apart and back, farther in each take; what is asked is the distance at their farthest."""
+    standing = takes[0]["low"]
+    rest = standing.vertices[0].astype(float)
+    # opposite corners of the highest ring
+    left, right = (int(36 + np.argmax(sign * rest[36:42, 0])) for sign in (1, -1))
+    out_and_back = np.sin(np.pi * np.arange(15) / 14)[:, None]
+    meshes, wide = {}, [0.1, 0.25, 0.5]
+    for k, gap in enumerate(wide):
+        points = np.repeat(rest[None], 15, axis=0)
+        points[:, left] += out_and_back * [1.2 * gap, 0.1, 0.2]
+        points[:, right] += out_and_back * [-gap, 0.1, 0.2]
+        meshes[f"grab{k}"] = MeshSequence(points.astype(np.float32), standing.faces, standing.fps)
+    made = space(meshes, parameters=("reach_width",), cyclic=False, blend="linear", outside="refuse")
+    assert sorted(made.hands.tolist()) == sorted([left, right])
+    apart = rest[left] - rest[right] + np.outer(wide, [2.2, 0, 0])
+    assert made.value[:, 0] == pytest.approx(np.linalg.norm(apart, axis=1), abs=1e-3)
+    blended = np.tensordot(weights_for(made, [0.8]), made.vertices[:, 7], 1)
+    assert np.linalg.norm(blended[left] - blended[right]) == pytest.approx(0.8, abs=0.005)
+
+
 def test_three_parameters_of_a_reach_are_inverted_together(takes):
     """The last vertex goes out to known places and back; the rest stands, the last of the rest breathes."""
     standing = takes[0]["low"]

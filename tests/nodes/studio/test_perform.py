@@ -126,7 +126,21 @@ def test_height_is_reached(motion, bone, height):
     assert (level.max() if motion == "reach_high" else level.min()) == pytest.approx(height, abs=0.015)
 
 
+@pytest.mark.parametrize("width", [0.35, 0.8])
+def test_hands_are_as_far_apart_as_the_box_is_wide(width):
+    take = perform(motion="grab", seconds=1.6, width=width)
+    names = list(take.skeleton.names)
+    left, right = (take.skeleton.joints[:, names.index(f"{side}_hand")] for side in ("left", "right"))
+    held = round(0.49 * 1.6 * 25)
+    assert np.linalg.norm(left - right, axis=1)[held] == pytest.approx(width, abs=0.01)
+    # in front of the chest, at one height
+    assert left[held, 2] - take.skeleton.joints[held, 0, 2] > 0.3
+    assert left[held, 1] == pytest.approx(right[held, 1], abs=0.02)
+
+
 def test_what_cannot_be_done_is_refused():
+    with pytest.raises(ValueError, match=r"width must be .* got 1\.90 m"):
+        perform(motion="grab", width=1.9)
     with pytest.raises(ValueError, match=r"needs at least .* s, got 0\.50 s: raise seconds"):
         perform(motion="jump_high", seconds=0.5)
     with pytest.raises(ValueError, match=r"height must be .* got 2\.39 m"):
