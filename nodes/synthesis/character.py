@@ -30,11 +30,15 @@ SOURCES = 8
 
 
 class Command(NamedTuple):
-    """What is asked: a space and values of its parameters. A new number is a new request."""
+    """What is asked: a space and values of its parameters. A new number is a new request.
+
+    hold: seconds that a motion rests where it reaches, unless something else is asked.
+    """
 
     space: int
     values: np.ndarray
     number: int = 0
+    hold: float = 0.0
 
 
 class Layer(NamedTuple):
@@ -103,6 +107,7 @@ class Character:
         self._goal = Command(start, data.values(start, {}) if values is None else values, -2)
         self.served, self._seen = -2, -2
         self._plan, self._edge, self._retry = -1.0, -1, 0.0
+        self._hold = 0.0
         self._set_control(start, self._goal.values)
         self.root[2] += self._sway(self.now)
         self._place(1e-3)
@@ -178,13 +183,14 @@ class Character:
         """Note a new request; a served one that is over gives way to the last cyclic one."""
         if command.number != self._seen:
             self._seen, self.asked, self._plan = command.number, self.time, -1.0
-            self._retry = 0.0
+            self._retry = self._hold = 0.0
         if self.data.spaces[command.space].cyclic:
             self._rest, self._goal = command, command
         elif self.served != command.number:
             self._goal = command
         else:
-            done = self.pose >= _LEAVE * self.data.spaces[self.space].poses or self.space != command.space
+            late = self.pose >= _LEAVE * self.data.spaces[self.space].poses and self._hold <= 0.0
+            done = late or self.space != command.space
             self._goal = self._rest if done else command
 
     def _seek(self, dt: float) -> None:
@@ -265,6 +271,7 @@ class Character:
         """Note that the last request has begun."""
         if self._goal.number == self._seen and self.served != self._seen:
             self.served, self.latency = self._seen, self.time - self.asked
+            self._hold = self._goal.hold
 
     def _follow(self, values: np.ndarray, dt: float) -> None:
         """Draw the controls to what gives these values, critically damped."""
@@ -292,7 +299,7 @@ class Character:
 
     def _play(self, dt: float) -> None:
         """Advance what plays, and the root by the blend of its velocities."""
-        self._advance(self.now, dt)
+        self._advance(self.now, self._unheld(dt))
         self._move[:] = self.now.step
         if self.blending:
             self._advance(self.old, dt)
@@ -308,6 +315,20 @@ class Character:
         self.root[0] += c * self._move[0] + s * self._move[1]
         self.root[1] += -s * self._move[0] + c * self._move[1]
         self.root[2] += self._move[2]
+
+    def _unheld(self, dt: float) -> float:
+        """How many of `dt` s the motion goes on: none while it rests where it reaches."""
+        stop, layer, space = self.data.reach[self.space], self.now, self.data.spaces[self.space]
+        if self._hold <= 0.0 or layer.pose[0] > stop + 1e-6:
+            return dt
+        go = min(
+            dt,
+            seconds_between(
+                space.seconds, space.cyclic, layer.weights, layer.pose[0], max(stop, layer.pose[0])
+            ),
+        )
+        self._hold -= dt - go
+        return go + max(0.0, -self._hold)
 
     def _advance(self, layer: Layer, dt: float) -> None:
         space = self.data.spaces[layer.space[0]]

@@ -13,12 +13,16 @@ from reperform.nodes.kernels.control_cells import Cells, framed
 from reperform.nodes.kernels.foot_contacts import foot_contacts
 from reperform.nodes.kernels.foot_hold import leg_fields
 from reperform.nodes.kernels.ground_plane import rotate_ground
-from reperform.nodes.kernels.parameter_map import ParameterMap
+from reperform.nodes.kernels.parameter_map import ParameterMap, controls_at
+from reperform.nodes.kernels.parameter_values import values_at
 from reperform.nodes.kernels.play_space import PlaySpace
 from reperform.nodes.kernels.root_frame import travel
 from reperform.nodes.kernels.transition_tables import EdgeTables
 from reperform.nodes.motion_graph.edge_tables import edge_tables
 from reperform.nodes.products.parametric import ParametricGraph, ParametricSpace
+
+# what is done may miss what is asked by this share of the range before it counts as out of reach
+_MISS = 0.02
 
 
 class Feet(NamedTuple):
@@ -61,6 +65,8 @@ class CharacterData:
     # per space what its blends do: controls (S, d) and values (S, d) of samples
     samples: tuple[tuple[np.ndarray, np.ndarray], ...]
     units: tuple[tuple[str, ...], ...]
+    # the pose at which each space reaches; -1 where it does not
+    reach: tuple[int, ...]
 
     @property
     def vertices(self) -> int:
@@ -91,12 +97,30 @@ class CharacterData:
             )
         middle = np.where((table.lower < 0) & (table.upper > 0), 0.0, 0.5 * (table.lower + table.upper))
         values = np.array([given.get(name, float(rest)) for name, rest in zip(names, middle, strict=True)])
-        for name, value, low, high in zip(names, values, table.lower, table.upper, strict=True):
-            if self.refuse[space] and not low <= value <= high:
-                raise ValueError(
-                    f"space {self.names[space]!r}: {name} must be {low:.3f} .. {high:.3f}, got {value:.3f}"
-                )
+        if self.refuse[space]:
+            self._require_reached(space, values)
         return values
+
+    def _require_reached(self, space: int, values: np.ndarray) -> None:
+        """Within the range of every parameter, and together what some blend does."""
+        names, table, units = self.parameters[space], self.maps[space], self.units[space]
+        cure = "ask for what is in reach, add takes, or give the space outside: clamp"
+        for name, value, low, high, unit in zip(names, values, table.lower, table.upper, units, strict=True):
+            if not low <= value <= high:
+                raise ValueError(
+                    f"space {self.names[space]!r}: {name} must be {low:.3f} .. {high:.3f} {unit}, got {value:.3f}: {cure}"
+                )
+        control = np.zeros(len(names))
+        controls_at(values, table, control)
+        nearest = values_at(control[None], *self.samples[space])[0]
+        if (np.abs(nearest - values) > _MISS * (table.upper - table.lower)).any():
+            asked, near = (
+                ", ".join(f"{name} {v:.3f} {unit}" for name, v, unit in zip(names, row, units, strict=True))
+                for row in (values, nearest)
+            )
+            raise ValueError(
+                f"space {self.names[space]!r}: no blend does {asked} together; the nearest does {near}: {cure}"
+            )
 
 
 def character_data(graph: ParametricGraph, spaces: Mapping[str, ParametricSpace]) -> CharacterData:
@@ -138,6 +162,7 @@ def character_data(graph: ParametricGraph, spaces: Mapping[str, ParametricSpace]
             for space in chosen
         ),
         units=tuple(tuple(str(unit) for unit in np.asarray(space.units)) for space in chosen),
+        reach=tuple(int(space.reach[1]) for space in chosen),
     )
 
 

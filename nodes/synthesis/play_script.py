@@ -13,6 +13,7 @@ from reperform.nodes.products.played import Played
 from reperform.nodes.synthesis.character import Character, Command
 from reperform.nodes.synthesis.character_data import CharacterData, character_data
 from reperform.nodes.synthesis.recording import record
+from reperform.nodes.synthesis.scripted_command import scripted_command
 
 _WHO = "synthesis.play_script"
 
@@ -22,7 +23,9 @@ def play_script(
     graph: ParametricGraph,
     spaces: Dataset[ParametricSpace],
     *,
-    script: Annotated[tuple[str, ...], Param(about="SECONDS SPACE [PARAMETER=VALUE ..], in order of time")],
+    script: Annotated[
+        tuple[str, ...], Param(about="SECONDS SPACE [PARAMETER=VALUE ..] [hold=SECONDS], in order of time")
+    ],
     seconds: Annotated[float, Param("s", 0.1, 3600.0, "length of the motion")] = 20.0,
     fps: Annotated[float, Param("Hz", 5.0, 240.0, "frames per second")] = 25.0,
     blend: Annotated[float, Param("s", 0.05, 2.0, "length of a transition")] = 0.3,
@@ -31,7 +34,9 @@ def play_script(
     """Play a timeline of commands through a parametric motion graph, as a user would with the keyboard.
 
     graph: how the spaces are joined; spaces: those that the graph names. Every step of 1 / fps s the character gets
-    the command of that time; transitions are searched on line. Same script, same motion.
+    the command of that time; transitions are searched on line. Same script, same motion. `hold=SECONDS` lets a motion
+    that reaches rest where it does; `grab width=0.45 hold=2` closes two hands on a box of that width (m), by the weights
+    f^-1(width), in the space named `grab` or the one with the parameter reach_width.
 
     Raises ValueError where the script cannot be read, names a space or parameter that there is not, or asks for a
     value that a space refuses.
@@ -49,8 +54,7 @@ def _director(data: CharacterData, script: tuple[str, ...]) -> Callable[[float],
     commands = []
     for number, cue in enumerate(read_script(script, _WHO)):
         try:
-            space = data.space(cue.motion)
-            commands.append((cue.time, Command(space, data.values(space, cue.values), number)))
+            commands.append((cue.time, scripted_command(data, cue, number)))
         except ValueError as error:
             raise ValueError(f"{_WHO}, line {number + 1}: {error}") from error
 

@@ -141,7 +141,7 @@ def test_a_wrong_script_is_told_of(playable, line, says):
 def test_a_space_that_refuses_says_what_it_can(playable):
     graph, spaces = playable
     strict = {**spaces, "walk": spaces["walk"]._replace(refuse=np.asarray(True))}
-    with pytest.raises(ValueError, match=r"speed must be 0\.\d+ \.\. 1\.\d+, got 9\.000"):
+    with pytest.raises(ValueError, match=r"speed must be 0\.\d+ \.\. 1\.\d+ m/s, got 9\.000"):
         play_script(graph, strict, script=("0 walk speed=9",))
 
 
