@@ -10,7 +10,7 @@ from reperform.nodes.kernels.hybrid_blend import HybridFields
 from reperform.nodes.kernels.hybrid_build import Hybrid
 from reperform.nodes.products.blend_space import BlendSpace
 
-_CODES = {8: np.int8, 16: np.int16}
+CODES = {8: np.int8, 16: np.int16}
 
 
 def hybrid_fields(space: BlendSpace) -> HybridFields:
@@ -23,7 +23,7 @@ def hybrid_fields(space: BlendSpace) -> HybridFields:
         start=np.ascontiguousarray(space.start),
         first=np.ascontiguousarray(space.first),
         begin=np.ascontiguousarray(space.begin),
-        code=np.ascontiguousarray(space.code).view(_CODES[int(space.bits)]),
+        code=np.ascontiguousarray(space.code).view(CODES[int(space.bits)]),
         step=np.ascontiguousarray(space.step),
     )
 

@@ -73,8 +73,25 @@ def evaluate_mix(
         return
     _linear(fields.inputs, before, weights, 1.0 - part, False, flat)
     _linear(fields.inputs, after, weights, part, True, flat)
-    _correct(fields, before, weights, 1.0 - part, flat, scratch)
-    _correct(fields, after, weights, part, flat, scratch)
+    correct_between(fields, before, after, part, weights, 1.0, flat, scratch)
+
+
+@njit(cache=True, nogil=True)
+def correct_between(
+    fields: HybridFields,
+    before: int,
+    after: int,
+    part: float,
+    weights: np.ndarray,
+    share: float,
+    flat: np.ndarray,
+    scratch: np.ndarray,
+) -> None:
+    """Add `share` of the corrections alone, between two poses, to coordinates flat (3 V,); inputs are not read."""
+    if part < 1.0:
+        _correct(fields, before, weights, share * (1.0 - part), flat, scratch)
+    if part > 0.0:
+        _correct(fields, after, weights, share * part, flat, scratch)
 
 
 @njit(cache=True, nogil=True)

@@ -35,9 +35,14 @@ class Hybrid(NamedTuple):
     error: np.ndarray
 
 
-def nonlinear_blends(inputs: np.ndarray, faces: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
-    """The non-linear blend of all poses, (T, V, 3), as a function of weights (N,); inputs: (N, T, V, 3), m."""
-    blender = MeshBlender.build(inputs[0, 0], faces)
+def nonlinear_blends(
+    inputs: np.ndarray, faces: np.ndarray, rest: np.ndarray | None = None
+) -> Callable[[np.ndarray], np.ndarray]:
+    """The non-linear blend of all poses, (T, V, 3), as a function of weights (N,); inputs: (N, T, V, 3), m.
+
+    rest: (V, 3), to which deformations are told; the first pose of the first input by default.
+    """
+    blender = MeshBlender.build(inputs[0, 0] if rest is None else rest, faces)
     sets: list[PoseSet] = []
     for pose in range(inputs.shape[1]):
         sets.append(blender.poses(list(inputs[:, pose]), sets[-1] if sets else None))

@@ -19,6 +19,7 @@ from reperform.nodes.kernels.play_space import (
     soles_of,
 )  # fmt: skip
 from reperform.nodes.kernels.transition_search import best_transition, new_found, new_trellis
+from reperform.nodes.synthesis.cell_corrections import add_corrections
 from reperform.nodes.synthesis.character_data import CharacterData
 
 # Share of a motion that is not cyclic within which it is entered, and from which it is left once it is served.
@@ -90,6 +91,7 @@ class Character:
         self._layers = [self._layer(s) for s in range(len(data.spaces))]
         self._old_layers = [self._layer(s) for s in range(len(data.spaces))]
         self._scratch = [np.empty(cells.corners.shape[1]) for cells in data.cells]
+        self._halved = [np.empty_like(scratch) for scratch in self._scratch]
         self._wanted = [np.zeros(len(names)) for names in data.parameters]
         depth, step, *_ = data.search
         self._trellis = [
@@ -354,6 +356,12 @@ class Character:
         space = self.data.spaces[layer.space[0]]
         pose_into(space.inputs, layer.weights, layer.pose[0], share, add, self._flat)
         planted_share(space.planted, layer.weights, layer.pose[0], share, add, self._share)
+        s = layer.space[0]
+        if self.data.corrections[s]:
+            add_corrections(
+                self.data.corrections[s], self.data.cells[s], layer.control, layer.pose[0], share,
+                self._scratch[s], self._halved[s], self._flat,
+            )  # fmt: skip
 
     def sources(self, take: np.ndarray, frame: np.ndarray, weight: np.ndarray) -> None:
         """Write what the frame is blended of, strongest first: takes, captured frames, weights (SOURCES,) of sum 1."""

@@ -13,6 +13,7 @@ from reperform.nodes.kernels.control_cells import Cells, framed
 from reperform.nodes.kernels.foot_contacts import foot_contacts
 from reperform.nodes.kernels.foot_hold import leg_fields
 from reperform.nodes.kernels.ground_plane import rotate_ground
+from reperform.nodes.kernels.hybrid_blend import HybridFields
 from reperform.nodes.kernels.parameter_map import ParameterMap, controls_at
 from reperform.nodes.kernels.parameter_values import values_at
 from reperform.nodes.kernels.play_space import PlaySpace
@@ -20,6 +21,8 @@ from reperform.nodes.kernels.root_frame import travel
 from reperform.nodes.kernels.transition_tables import EdgeTables
 from reperform.nodes.motion_graph.edge_tables import edge_tables
 from reperform.nodes.products.parametric import ParametricGraph, ParametricSpace
+from reperform.nodes.products.space_corrections import SpaceCorrections
+from reperform.nodes.synthesis.cell_corrections import Blending, cell_corrections
 
 # what is done may miss what is asked by this share of the range before it counts as out of reach
 _MISS = 0.02
@@ -67,6 +70,8 @@ class CharacterData:
     units: tuple[tuple[str, ...], ...]
     # the pose at which each space reaches; -1 where it does not
     reach: tuple[int, ...]
+    # corrections of linear blending in every cell of a space; none where it is blended linearly
+    corrections: tuple[tuple[HybridFields, ...], ...]
 
     @property
     def vertices(self) -> int:
@@ -123,10 +128,16 @@ class CharacterData:
             )
 
 
-def character_data(graph: ParametricGraph, spaces: Mapping[str, ParametricSpace]) -> CharacterData:
+def character_data(
+    graph: ParametricGraph,
+    spaces: Mapping[str, ParametricSpace],
+    corrections: Mapping[str, SpaceCorrections] | None = None,
+    blending: Blending = "linear",
+) -> CharacterData:
     """Gather what a graph and its spaces say.
 
-    Raises ValueError where a space of the graph is missing.
+    blending: hybrid corrects the linear blend in those spaces that `corrections` (of blend.correct_space) are for.
+    Raises ValueError where a space of the graph is missing, or corrections are of no space of the graph or none.
     """
     names = tuple(str(name) for name in np.asarray(graph.spaces))
     missing = [name for name in names if name not in spaces]
@@ -163,6 +174,7 @@ def character_data(graph: ParametricGraph, spaces: Mapping[str, ParametricSpace]
         ),
         units=tuple(tuple(str(unit) for unit in np.asarray(space.units)) for space in chosen),
         reach=tuple(int(space.reach[1]) for space in chosen),
+        corrections=cell_corrections(chosen, corrections or {}, blending),
     )
 
 

@@ -12,6 +12,8 @@ from reperform.nodes.kernels.obstacle_path import Obstacles, around_obstacles
 from reperform.nodes.product import Dataset
 from reperform.nodes.products.parametric import ParametricGraph, ParametricSpace
 from reperform.nodes.products.played import Played
+from reperform.nodes.products.space_corrections import SpaceCorrections
+from reperform.nodes.synthesis.cell_corrections import Blending
 from reperform.nodes.synthesis.character import Character
 from reperform.nodes.synthesis.character_data import character_data
 from reperform.nodes.synthesis.path_pilot import PathPilot
@@ -24,6 +26,7 @@ _WHO = "synthesis.play_path"
 def play_path(
     graph: ParametricGraph,
     spaces: Dataset[ParametricSpace],
+    corrections: Dataset[SpaceCorrections] | None = None,
     *,
     points: Annotated[
         tuple[str, ...], Param("m", about="X Z of points that the path goes through, two or more")
@@ -36,6 +39,9 @@ def play_path(
     margin: Annotated[float, Param("m", 0.0, 3.0, "kept from obstacles")] = 0.4,
     fps: Annotated[float, Param("Hz", 5.0, 240.0, "frames per second")] = 25.0,
     blend: Annotated[float, Param("s", 0.05, 2.0, "length of a transition")] = 0.3,
+    blending: Annotated[
+        Blending, Param(about="of meshes; hybrid: corrected where `corrections` are given, else linear")
+    ] = "linear",
 ) -> Played:
     """Follow a smooth path through points on the ground, past obstacles, until it ends.
 
@@ -48,7 +54,7 @@ def play_path(
 
     Source: 004 section 4.5.1 (a path drawn by the user, obstacles avoided).
     """
-    data = character_data(graph, spaces)
+    data = character_data(graph, spaces, corrections, blending)
     places = _numbers(points, 2, "points")
     if len(places) < 2:
         raise ValueError(f"{_WHO}: a path needs two points X Z or more, got {len(places)}")

@@ -10,6 +10,8 @@ from reperform.nodes.kernels.command_script import read_script
 from reperform.nodes.product import Dataset
 from reperform.nodes.products.parametric import ParametricGraph, ParametricSpace
 from reperform.nodes.products.played import Played
+from reperform.nodes.products.space_corrections import SpaceCorrections
+from reperform.nodes.synthesis.cell_corrections import Blending
 from reperform.nodes.synthesis.character import Character, Command
 from reperform.nodes.synthesis.character_data import CharacterData, character_data
 from reperform.nodes.synthesis.recording import record
@@ -22,6 +24,7 @@ _WHO = "synthesis.play_script"
 def play_script(
     graph: ParametricGraph,
     spaces: Dataset[ParametricSpace],
+    corrections: Dataset[SpaceCorrections] | None = None,
     *,
     script: Annotated[
         tuple[str, ...], Param(about="SECONDS SPACE [PARAMETER=VALUE ..] [hold=SECONDS], in order of time")
@@ -30,20 +33,24 @@ def play_script(
     fps: Annotated[float, Param("Hz", 5.0, 240.0, "frames per second")] = 25.0,
     blend: Annotated[float, Param("s", 0.05, 2.0, "length of a transition")] = 0.3,
     ease: Annotated[float, Param("s", 0.02, 2.0, "in which a foot that was held is let go")] = 0.2,
+    blending: Annotated[
+        Blending, Param(about="of meshes; hybrid: corrected where `corrections` are given, else linear")
+    ] = "linear",
 ) -> Played:
     """Play a timeline of commands through a parametric motion graph, as a user would with the keyboard.
 
-    graph: how the spaces are joined; spaces: those that the graph names. Every step of 1 / fps s the character gets
-    the command of that time; transitions are searched on line. Same script, same motion. `hold=SECONDS` lets a motion
-    that reaches rest where it does; `grab width=0.45 hold=2` closes two hands on a box of that width (m), by the weights
-    f^-1(width), in the space named `grab` or the one with the parameter reach_width.
+    graph: how the spaces are joined; spaces: those that the graph names; corrections: of blend.correct_space. Every
+    step of 1 / fps s the character gets the command of that time; transitions are searched on line. Same script, same
+    motion. `hold=SECONDS` lets a motion that reaches rest where it does; `grab width=0.45 hold=2` closes two hands on
+    a box of that width (m), by the weights f^-1(width), in the space named `grab` or the one with the parameter
+    reach_width.
 
     Raises ValueError where the script cannot be read, names a space or parameter that there is not, or asks for a
     value that a space refuses.
 
     Source: Casas, Tejera, Guillemaut and Hilton 2012, I3D; 004 chapter 4, appendix B (keyboard control).
     """
-    data = character_data(graph, spaces)
+    data = character_data(graph, spaces, corrections, blending)
     direct = _director(data, script)
     start = direct(0.0)
     character = Character(data, start.space, blend=blend, ease=ease)
