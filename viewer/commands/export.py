@@ -19,7 +19,7 @@ from reperform.viewer.invocation import result_of
     "file",
     required=True,
     type=click.Path(dir_okay=False),
-    help=".glb .obj .ply .usd .bvh .mp4 .png .csv .npz",
+    help=".glb .obj .ply .usd .bvh .mp4 .png .csv .xml .npz",
 )
 @run_options
 def command(pipeline: str, target: str, file: str, **options: Any) -> None:

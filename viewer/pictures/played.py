@@ -12,9 +12,11 @@ from reperform.viewer.palette import ACCENT, INK, PAPER, RULE, SOFT_INK, STATION
 from reperform.viewer.pictures.canvas import figure, pixels
 from reperform.viewer.pictures.look import Look
 
-# neighbours in the list differ in hue
-_COLOURS = list(STATIONS.values())[::5] + list(STATIONS.values())[1::5] + list(STATIONS.values())[2::5]
-_COLOURS += [colour for colour in STATIONS.values() if colour not in _COLOURS]
+# neighbours in the list differ in hue; without the grey one, which looks like the first
+_HUES = [colour for name, colour in STATIONS.items() if name != "evaluate"]
+_COLOURS = [_HUES[5 * k % len(_HUES)] for k in range(len(_HUES))]
+# a parameter's axis shows at least this share of its greatest value
+_SPAN = 0.1
 
 
 def played_picture(product: Played, frame: int, look: Look) -> np.ndarray:
@@ -88,6 +90,11 @@ def _parameter(axis: Any, product: Played, k: int, rate: float) -> None:
     axis.plot(time, asked, color=INK, linestyle="--", linewidth=1.1)
     axis.plot(time, done, color=INK, linewidth=1.8)
     axis.margins(y=0.15)
+    low, high = axis.get_ylim()
+    least = _SPAN * max(abs(low), abs(high))
+    if high - low < least:
+        axis.set_ylim(0.5 * (low + high - least), 0.5 * (low + high + least))
+    axis.ticklabel_format(axis="y", useOffset=False, style="plain")
     axis.set_ylabel(f"{name.replace('_', ' ')}\n({unit})", fontsize=8.5)
     axis.tick_params(labelsize=8)
     axis.grid(True, axis="y", color=RULE, linewidth=0.5)
