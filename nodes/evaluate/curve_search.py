@@ -39,8 +39,8 @@ def curve_search(
     ] = 0.2,
     beam: Annotated[int, Param("1", 1, 100_000, "walks followed per stretch and frame")] = 4,
     patience: Annotated[
-        float, Param("s", 0.1, 3600.0, "of depth-first search, once it has taken longer than this it ends")
-    ] = 30.0,
+        float, Param("1", 1.0, 1000.0, "times the table's seconds that depth-first search gets")
+    ] = 12.0,
     small: Annotated[int, Param("1", 1, 200, "small problems whose optimum is proved")] = 8,
     length: Annotated[float, Param("m", 0.1, 10.0, "of the small problems' curves")] = 0.8,
     most: Annotated[int, Param("1", 1, 10**10, "moves tried to prove one optimum")] = 30_000_000,
@@ -49,10 +49,11 @@ def curve_search(
     """How much faster the table over arc length finds as good a walk, and how far its walks are from the best.
 
     On the given curve, one row: `speedup`, seconds of depth-first search over those of the table, the former until it
-    is as cheap or out of patience; `cost ratio`, the table's cost over what depth-first search then has (nan: it has
-    none); `seconds` of the table. On `small` seeded curves from single poses, arcs of random bend: `gap`, the
-    greatest (cost - optimum) / optimum, the optimum by depth-first search with the lower bound, run to its end;
-    `proved`, the share of them that got to their end within `most` moves (the others do not count).
+    is as cheap, or out of patience (then it would take more); `cost ratio`, the table's cost over what depth-first
+    search then has (nan: it has none); `seconds` of the table. On `small` seeded curves from single poses, arcs of
+    random bend: `gap`, the greatest (cost - optimum) / optimum, the optimum by depth-first search with the lower
+    bound, run to its end; `proved`, the share of them that got to their end within `most` moves (the others do not
+    count).
 
     Raises as synthesis.along_curve.
     Source: 002 section 4 (Boukhayma and Boyer 2015, 3DV) uses depth-first search with branch and bound.
@@ -67,7 +68,7 @@ def curve_search(
         raise ValueError(
             f"{_WHO}: no walk was found along the curve: raise beam, or leave gaps between actions"
         )
-    cost, taken = _depth_first(problem, walk.cost, patience)
+    cost, taken = _depth_first(problem, walk.cost, patience * own)
     gaps = _gaps(ready, distance_weight, beam, small, length, most, seed)
     known = gaps[np.isfinite(gaps)]
     values = {
@@ -84,8 +85,8 @@ def curve_search(
     )
 
 
-def _depth_first(problem: CurveProblem, cost: float, patience: float) -> tuple[float, float]:
-    """The cost that the seed's search gets to, and the seconds it takes to be as good or runs out of patience."""
+def _depth_first(problem: CurveProblem, cost: float, seconds: float) -> tuple[float, float]:
+    """The cost that the seed's search gets to, and the seconds it takes to be as good or until its time is up."""
     depth_first_walk(problem.trail, None, problem.starts, 1)
     tried = 100_000
     while True:
@@ -93,9 +94,10 @@ def _depth_first(problem: CurveProblem, cost: float, patience: float) -> tuple[f
         found, done = depth_first_walk(problem.trail, None, problem.starts, tried)
         taken = time.perf_counter() - begin
         reached = np.inf if found is None else found.cost
-        if reached <= cost or done or taken > patience / _MORE:
+        if reached <= cost or done or taken >= seconds:
             return reached, taken
-        tried *= _MORE
+        # up to the moves that fill the time, and a little more
+        tried = min(_MORE * tried, int(1.1 * tried * seconds / taken) + 1)
 
 
 def _gaps(

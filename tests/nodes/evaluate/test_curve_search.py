@@ -42,7 +42,7 @@ def test_small_problems_are_solved_to_the_optimum_and_depth_first_is_no_cheaper(
         *database,
         curve=((0, 0), (0.1, 0.5), (0.4, 0.8)),
         distance_weight=1.0,
-        patience=0.2,
+        patience=20.0,
         small=3,
         length=0.4,
         beam=50,
