@@ -46,9 +46,11 @@ def run_batch(batch: Batch) -> Outcome:
 @contextlib.contextmanager
 def _threads(count: int) -> Any:
     """Hold numba and OpenCV to the declared threads, so that parallel items do not oversubscribe the machine."""
-    if numba := sys.modules.get("numba"):
+    # modules that another batch is in the midst of importing lack what is asked for here
+    numba, cv2 = sys.modules.get("numba"), sys.modules.get("cv2")
+    if numba and hasattr(numba, "set_num_threads"):
         numba.set_num_threads(min(count, numba.config.NUMBA_NUM_THREADS))
-    if (cv2 := sys.modules.get("cv2")) and cv2.getNumThreads() != 1:
+    if cv2 and hasattr(cv2, "setNumThreads") and cv2.getNumThreads() != 1:
         cv2.setNumThreads(1)
     yield
 

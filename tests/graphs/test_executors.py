@@ -1,5 +1,7 @@
 """Threads, worker processes, a cluster, two cold runs: the same digests, whoever computes."""
 
+import sys
+
 import pytest
 from distributed import LocalCluster
 
@@ -93,3 +95,14 @@ def test_no_cluster_at_the_address(plug_in, tmp_path, monkeypatch):
     monkeypatch.setattr(executor, "CONNECT_SECONDS", 0.3)
     with pytest.raises(ConnectionError, match="start one with `dask scheduler`"):
         executor.Workers.at("tcp://127.0.0.1:9")
+
+
+def test_a_library_that_another_batch_is_importing_is_left_alone(monkeypatch):
+    from types import ModuleType
+
+    from reperform.graphs.batch import _threads
+
+    for name in ("numba", "cv2"):
+        monkeypatch.setitem(sys.modules, name, ModuleType(name))
+    with _threads(1):
+        pass
