@@ -2,8 +2,10 @@ import numpy as np
 import pytest
 
 from reperform.nodes.kernels.hybrid_blend import (
+    correct_between,
     evaluate,
     evaluate_between,
+    evaluate_mix,
     hat_values,
     linear_into,
     new_scratch,
@@ -86,3 +88,22 @@ def test_codes_err_by_half_a_step(inputs):
         assert step < 1.0 / 2**bits
         error = max(np.abs(_at(built.fields, w) - exact(w)[1]).max() for w in built.weights)
         assert error <= 0.5 * step * 1.01 + 1e-6
+
+
+@pytest.mark.parametrize("epsilon", [0.0, 0.2])
+def test_one_pass_writes_what_linear_blending_and_corrections_add_up_to(inputs, epsilon):
+    fields = build_hybrid(inputs, _curved(inputs), epsilon, 2, 2).fields
+    scratch, rng = new_scratch(fields), np.random.default_rng(5)
+    one, two = np.empty((2, *inputs.shape[2:]), np.float32)
+    lifted = 0
+    # sparse: runs have gaps before, between or after them
+    assert epsilon == 0.0 or 0 < fields.code.size < 0.9 * fields.step.size * fields.inputs.shape[2]
+    for weights in [*rng.dirichlet(np.ones(len(inputs)), 20), np.eye(len(inputs))[1]]:
+        evaluate(fields, 2, weights, one, scratch)
+        linear_into(fields, 2, weights, two)
+        lifted += not np.array_equal(one, two)
+        correct_between(fields, 2, 0, 0.0, weights, 1.0, two.reshape(-1), scratch)
+        np.testing.assert_allclose(one, two, rtol=0.0, atol=0.0 if len(inputs) == 2 else 1e-6)
+        evaluate_mix(fields, 2, 0, 0.4, weights, one, scratch)
+        np.testing.assert_allclose(one, 0.6 * two + 0.4 * _at(fields, weights, 0), atol=2e-6)
+    assert lifted > 15
