@@ -11,6 +11,8 @@ from reperform.nodes.declaration import Param, node
 from reperform.nodes.product import Dataset
 from reperform.nodes.products.measures import Measures
 from reperform.nodes.products.parametric import ParametricGraph, ParametricSpace
+from reperform.nodes.products.space_corrections import SpaceCorrections
+from reperform.nodes.synthesis.cell_corrections import Blending
 from reperform.nodes.synthesis.character import Character
 from reperform.nodes.synthesis.character_data import character_data
 from reperform.nodes.synthesis.random_commands import RandomCommands
@@ -20,6 +22,7 @@ from reperform.nodes.synthesis.random_commands import RandomCommands
 def play_rate(
     graph: ParametricGraph,
     spaces: Dataset[ParametricSpace],
+    corrections: Dataset[SpaceCorrections] | None = None,
     *,
     characters: Annotated[int, Param("1", 1, 1000, "that are played side by side from one database")] = 1,
     seconds: Annotated[float, Param("s", 0.5, 3600.0, "played")] = 60.0,
@@ -27,6 +30,9 @@ def play_rate(
     every: Annotated[float, Param("s", 0.2, 60.0, "from one random command to the next")] = 2.0,
     seed: Annotated[int, Param("1", 0, 2**31 - 1, "seed of the commands")] = 0,
     repeats: Annotated[int, Param("1", 1, 20, "of the whole; per frame the least time counts")] = 3,
+    blending: Annotated[
+        Blending, Param(about="of meshes; hybrid: corrected where `corrections` are given, else linear")
+    ] = "linear",
 ) -> Measures:
     """Time per frame under random commands: entries `frame` (ms) and `rate` (frames of all characters per second, Hz).
 
@@ -36,7 +42,7 @@ def play_rate(
 
     Source: 004 section 4.5 (rates of the interactive application).
     """
-    data = character_data(graph, spaces)
+    data = character_data(graph, spaces, corrections, blending)
     frames = max(2, round(seconds * fps))
     best = np.full(frames, np.inf)
     for round_ in range(repeats + 1):

@@ -8,6 +8,9 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+# What is so much above the lowest of a sole (m) does not touch the ground.
+_TOUCHES = 0.04
+
 
 class PlaySpace(NamedTuple):
     """Inputs i of poses k that are blended by weights w (N,). A cyclic space has its first pose again at the end."""
@@ -173,18 +176,38 @@ def place_into(
 
 @njit(cache=True, nogil=True)
 def soles_of(
-    flat: np.ndarray, x: float, z: float, yaw: float, start: np.ndarray, vertex: np.ndarray, out: np.ndarray
-) -> None:
-    """The middle of each sole in the world, out (K, 3); sole k has vertices vertex[start[k] : start[k + 1]]."""
+    flat: np.ndarray, x: float, z: float, yaw: float, start: np.ndarray, vertex: np.ndarray, point: np.ndarray,
+    out: np.ndarray, slid: np.ndarray,
+) -> None:  # fmt: skip
+    """The middle of each sole in the world, out (K, 3), and how far over the ground it slid where it touches.
+
+    Sole k has vertices vertex[start[k] : start[k + 1]]; point (n, 3), all of them in the world, is where they were, and
+    is overwritten with where they are. slid (K, 2): x, z, the mean motion of what touches the ground before and after,
+
+        slid = sum_v a_v(t - 1) a_v(t) (x_v(t) - x_v(t - 1)) / sum_v a_v(t - 1) a_v(t),   a_v = max(0, 1 - (y_v - min y) / h)
+
+    with h = 0.04 m, so that a foot may roll from heel to ball while it is held.
+    """
     c, s = math.cos(yaw), math.sin(yaw)
     for k in range(len(start) - 1):
-        px, py, pz = 0.0, 0.0, 0.0
-        for n in range(start[k], start[k + 1]):
-            px += flat[3 * vertex[n]]
-            py += flat[3 * vertex[n] + 1]
-            pz += flat[3 * vertex[n] + 2]
-        count = max(start[k + 1] - start[k], 1)
-        px, py, pz = px / count, py / count, pz / count
-        out[k, 0] = c * px + s * pz + x
-        out[k, 1] = py
-        out[k, 2] = c * pz - s * px + z
+        first, last = start[k], start[k + 1]
+        before, now = math.inf, math.inf
+        for n in range(first, last):
+            before, now = min(before, point[n, 1]), min(now, flat[3 * vertex[n] + 1])
+        out[k] = 0.0
+        slid[k] = 0.0
+        touches = 0.0
+        for n in range(first, last):
+            a, y, b = flat[3 * vertex[n]], flat[3 * vertex[n] + 1], flat[3 * vertex[n] + 2]
+            px, pz = c * a + s * b + x, c * b - s * a + z
+            share = max(0.0, 1.0 - (point[n, 1] - before) / _TOUCHES) * max(0.0, 1.0 - (y - now) / _TOUCHES)
+            touches += share
+            slid[k, 0] += share * (px - point[n, 0])
+            slid[k, 1] += share * (pz - point[n, 2])
+            point[n, 0], point[n, 1], point[n, 2] = px, y, pz
+            out[k, 0] += px
+            out[k, 1] += y
+            out[k, 2] += pz
+        out[k] /= max(last - first, 1)
+        if touches > 0.0:
+            slid[k] /= touches

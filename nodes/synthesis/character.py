@@ -64,7 +64,7 @@ class Character:
     A command for the space that plays moves its controls; for another, a transition is searched from the state of now
     (004 eq 4.2), waited for, and blended over `blend` s with weights flat at both ends. A motion that is not cyclic is
     performed once per request; then the last cyclic motion goes on. Root motion is the blend of the roots' velocities,
-    and planted feet are held.
+    and planted feet are held where they touch the ground.
 
     space, values: what it begins with; place: x, z (m) and heading (rad, 0 along +z, left positive) where it begins.
 
@@ -86,7 +86,8 @@ class Character:
         self.time, self.asked, self.latency, self.cost = 0.0, 0.0, math.nan, math.nan
         self.mix, self.blending, self.stuck = 1.0, False, 0.0
         self._flat = np.zeros(3 * data.vertices, np.float32)
-        self._share, self._natural = np.zeros(feet), np.zeros((feet, 3))
+        self._share, self._natural, self._slid = np.zeros(feet), np.zeros((feet, 3)), np.zeros((feet, 2))
+        self._touch = np.zeros((len(data.feet.vertex), 3))
         self._lock, self._move = new_lock(feet), np.zeros(3)
         self._layers = [self._layer(s) for s in range(len(data.spaces))]
         self._old_layers = [self._layer(s) for s in range(len(data.spaces))]
@@ -345,8 +346,8 @@ class Character:
         if self.blending:
             self._blend(self.old, 1.0 - share, True)
         feet, (x, z, yaw) = self.data.feet, self.root
-        soles_of(self._flat, x, z, yaw, feet.start, feet.vertex, self._natural)
-        lock_feet(self._natural, self._share, self._lock, dt, self.ease, 0.3, self.root)
+        soles_of(self._flat, x, z, yaw, feet.start, feet.vertex, self._touch, self._natural, self._slid)
+        lock_feet(self._slid, self._share, self._lock, dt, self.ease, 0.3, self.root)
         np.add(self._natural, self._lock.shift, out=self.soles)
         self.planted[:] = self._lock.held
         np.greater_equal(self._share, 0.95, out=self.resting)

@@ -84,11 +84,14 @@ FIGURES = {
     "runtime": {
         "hz_median": (">=", 200.0),
         "frame_p99_ms": ("<=", 10.0),
+        "hybrid_hz_median": (">=", 200.0),
+        "hybrid_frame_p99_ms": ("<=", 10.0),
         "latency_max_s": ("<=", 1.2),
         "dead_states": ("<=", 0.0),
         "crowd10_hz": (">=", 25.0),
         "parameter_error": ("<=", 0.02),
         "contact_speed_m_s": ("<=", 0.05),
+        "contact_speed_p99_m_s": ("<=", 0.05),
         "path_max_error_m": ("<=", 0.15),
     },
     "similarity_measures": {

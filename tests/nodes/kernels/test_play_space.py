@@ -80,6 +80,33 @@ def test_the_world_is_a_turn_a_shift_and_what_holds_the_feet():
     expected[1] += 0.5 * shift[0]
     np.testing.assert_allclose(out, expected, atol=1e-6)
     sole = np.zeros((1, 3))
-    soles_of(flat, 2.0, -1.0, np.pi / 2, np.array([0, 2]), np.array([0, 2]), sole)
+    soles_of(
+        flat,
+        2.0,
+        -1.0,
+        np.pi / 2,
+        np.array([0, 2]),
+        np.array([0, 2]),
+        np.zeros((2, 3)),
+        sole,
+        np.zeros((1, 2)),
+    )
     x, y, z = points[[0, 2]].mean(axis=0)
     np.testing.assert_allclose(sole[0], [z + 2, y, -x - 1], atol=1e-6)
+
+
+def test_a_foot_that_rolls_over_its_ball_does_not_slide():
+    """Heel and ball; the heel rises about the ball, then all of it is carried along."""
+    ball = np.array([0.1, 0.0, 0.4])
+    start, vertex = np.array([0, 2]), np.array([0, 1])
+    point, sole, slid, moved = np.zeros((2, 3)), np.zeros((1, 3)), np.zeros((1, 2)), []
+    for angle, carried in ((0.0, 0.0), (0.25, 0.0), (0.5, 0.0), (0.75, 0.0), (0.75, 0.03)):
+        c, s = np.cos(angle), np.sin(angle)
+        lifted = ball + [0.0, 0.2 * s, -0.2 * c] + [0.0, 0.0, carried]
+        flat = np.concatenate([ball + [0.0, 0.0, carried], lifted]).astype(np.float32)
+        soles_of(flat, 2.0, -1.0, np.pi / 2, start, vertex, point, sole, slid)
+        moved.append(slid[0].copy())
+    np.testing.assert_allclose(moved[1:4], 0.0, atol=1e-6)
+    # facing +x
+    np.testing.assert_allclose(moved[4], [0.03, 0.0], atol=1e-6)
+    np.testing.assert_allclose(sole[0, 0], 2.0 + 0.5 * (0.43 + lifted[2]), atol=1e-6)
