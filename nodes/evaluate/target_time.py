@@ -34,7 +34,7 @@ def target_time(
     distances: Annotated[tuple[float, ...], Param("m", about="targets")] = (4.0, 8.0, 12.0, 16.0, 20.0),
     durations: Annotated[tuple[float, ...], Param("s", about="targets")] = (8.0, 16.0, 24.0, 32.0, 40.0),
     programmes: Annotated[int, Param("1", 0, 1000, "targets that the integer programme solves too")] = 2,
-    cells: Annotated[float, Param("1e6", 1.0, 4000.0, "size of the table")] = 200.0,
+    cells: Annotated[float, Param("1e6", 1.0, 4000.0, "size of the table")] = 150.0,
     patience: Annotated[float, Param("s", 0.1, 1e5, "after which an integer programme is cut off")] = 20.0,
     walks: Annotated[int, Param("1", 1, 10**6, "loop-free walks at most")] = 5000,
     loops: Annotated[int, Param("1", 1, 10**6, "loops at most")] = 5000,

@@ -9,8 +9,8 @@ import numpy as np
 
 from reperform.nodes.kernels.ground_plane import Placement, rotate_ground
 from reperform.nodes.kernels.path_frames import Passage
-from reperform.nodes.kernels.prepared_search import PreparedSearch
 from reperform.nodes.kernels.walk_moves import Moves, Targets, Walk
+from reperform.nodes.kernels.walk_table import least_by_steps
 
 # Walks that agree in place (m), turn (rad) and distance (m) to within these are one: the cheapest of them stays.
 _ALIKE = np.array([0.02, 0.02, 0.02, 0.02])
@@ -56,8 +56,7 @@ def best_placed(
     Layer by layer over steps; of each state and number of steps the `width` cheapest walks stay, of those nearly
     alike in place, turn and distance one. `bound` is the least cost to the end in time, whatever the place.
     """
-    reach = PreparedSearch.fill(moves, horizon, np.inf, 0.0)
-    least = np.asarray(reach.table.least, np.float64)
+    least = least_by_steps(moves, horizon)
     rows = np.arange(horizon + 1)
     late = np.nan_to_num(np.abs(rows - targets.steps))
     rows = rows[(late <= targets.steps_tolerance + 1e-6) & np.isfinite(least[0])]

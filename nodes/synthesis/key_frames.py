@@ -62,8 +62,9 @@ def key_frames(
         dist = arc length of the centroid's track on the ground, blended frames included;  time = frames / fps
 
     Key frames are captured frames, shown unblended. The minimum is over all walks through the graph, loops
-    included, by dynamic programming over (place, steps, distance). `bound` is proved to be under the cost of
-    every walk within the tolerances; it equals the cost where all walks that rounding leaves open were tried.
+    included: dynamic programming bounds what remains to be paid by (place, steps, distance), and a search led by it
+    tries all walks under a rising limit. `bound` is proved to be under the cost of every walk within the tolerances;
+    it equals the cost where the search came to its end.
 
     With a position or heading, position_weight |place - position| + heading_weight |turn - heading| joins the cost
     (coordinates of the first take; turn: how the last frame is turned against the first, by least squares). Then the
@@ -75,8 +76,8 @@ def key_frames(
 
     Source: Huang, Tejera, Collomosse and Hilton 2015, ACM TOG (000 section 5.1, eqs 7-13); position: 003 eq 6.
     Departure: 000 enumerates walks and attaches loops by integer programming (eqs 14-25), where the target is
-    subtracted once per loop and loops need not connect; the dynamic program covers every connected walk, with
-    tolerances as hard limits. Weights as in 000: 0.3 m costs as much as 10 frames at 25 Hz.
+    subtracted once per loop and loops need not connect; the search covers every connected walk, with tolerances
+    as hard limits. Weights as in 000: 0.3 m costs as much as 10 frames at 25 Hz.
     """
     rate, keys = float(graph.fps), (start, *via, end)
     asked = asked_targets(

@@ -44,19 +44,19 @@ def target_grid(
     duration_tolerance: Annotated[float, Param("s", 1e-6, 600.0, "greatest error of the duration")] = 0.08,
     cells: Annotated[
         float, Param("1e6", 1.0, 4000.0, "size of the table; finer distances with more")
-    ] = 200.0,
+    ] = 150.0,
 ) -> TargetGrid:
     """The cheapest walk for every target of distance and duration, from one table per key-frame sequence.
 
-    Cost, key frames and tolerances are those of `synthesis.key_frames`. The table over (place, steps, distance)
-    is filled once; each target is then looked up, and improved by trying the walks that its bound leaves open.
+    Cost, key frames and tolerances are those of `synthesis.key_frames`. The table of what remains to be paid by (place,
+    steps, distance) is filled once; each target is then searched for, led by it.
     `status` is 1 where the target is met, 0 where it is proved that no walk meets it, -1 where neither could be
     shown; of the latter two the nearest walk is told.
 
     Raises ValueError where a key frame does not exist, key frames cannot be joined, or targets do not rise.
 
     Source: Huang, Tejera, Collomosse and Hilton 2015, ACM TOG (000 section 6.1, table III: 20 x 40 targets).
-    Departure: one dynamic program answers all targets; 000 solves one integer program for each.
+    Departure: one table serves all targets; 000 solves one integer program for each.
     """
     rate = float(graph.fps)
     far, late = _rising(distances, "distances"), _rising(durations, "durations")

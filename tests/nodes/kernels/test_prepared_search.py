@@ -10,7 +10,7 @@ from reperform.nodes.kernels.walk_moves import Spot, Targets, lay_out
 
 @pytest.mark.parametrize("seed", range(8))
 @pytest.mark.parametrize("via", [False, True])
-@pytest.mark.parametrize("cells", [20_000_000, 200_000])
+@pytest.mark.parametrize("cells", [5_000_000, 50_000])
 def test_one_table_answers_every_target_as_trying_every_walk_does(seed: int, via: bool, cells: int) -> None:
     graph, random = random_graph(seed), np.random.default_rng(100 + seed)
     keys = [Spot(0, 1), *([Spot(1, 8)] if via else []), Spot(2, 17)]
@@ -28,31 +28,47 @@ def test_one_table_answers_every_target_as_trying_every_walk_does(seed: int, via
         assert (answer.walk is not None) == bool(np.isfinite(exact))
         if answer.walk is not None:
             assert answer.walk.cost == pytest.approx(exact, abs=1e-6)
-            assert answer.walk.bound == pytest.approx(exact, abs=1e-5)
+            assert answer.walk.bound == pytest.approx(exact, abs=1e-6)
         else:
             near = search.nearest(targets)
             assert near is not None
             miss = abs(every.length - targets.distance) / 0.15 + abs(every.steps - targets.steps) / 5
             got = abs(near.distance - targets.distance) / 0.15 + abs(near.steps - targets.steps) / 5
-            assert got == pytest.approx(miss.min(), abs=0.01 if cells > 1_000_000 else 0.2)
+            assert got == pytest.approx(miss.min(), abs=0.01)
+            assert np.isnan(near.bound)
 
 
-@pytest.mark.parametrize("seed", range(4))
-def test_without_effort_the_bound_still_holds(seed: int) -> None:
+@pytest.mark.parametrize("seed", [1, 3, 5])
+@pytest.mark.parametrize("effort", [0, 20, 200])
+def test_with_little_effort_the_bound_still_holds(seed: int, effort: int) -> None:
     graph, keys = random_graph(seed), [Spot(0, 1), Spot(2, 17)]
     every = every_walk(graph, keys, 60)
-    search = PreparedSearch.fill(lay_out(*graph, keys), 60, 6.0, 3.3, 50_000)
+    search = PreparedSearch.fill(lay_out(*graph, keys), 60, 6.0, 3.3, 20_000)
+    gaps = []
     for distance in np.linspace(0.5, 3.0, 12):
         targets = Targets(distance, 35, 3.3, 0.1, 0.3, 8.0)
-        walk = search.ask(targets, effort=0).walk
-        if walk is not None:
-            assert walk.bound - 1e-5 <= every.least(targets) <= walk.cost + 1e-6
+        walk, exact = search.ask(targets, effort).walk, every.least(targets)
+        if walk is None:
+            # few labels per step suffice where there is anything to find
+            assert np.isinf(exact)
+            continue
+        assert walk.bound - 1e-6 <= exact <= walk.cost + 1e-6
+        gaps.append(walk.cost - walk.bound)
+    assert gaps
+    assert max(gaps) > 1e-3 or effort > 0
 
 
-def test_a_table_refuses_a_greater_weight_than_its_own() -> None:
-    search = PreparedSearch.fill(lay_out(*random_graph(1), [Spot(0, 1), Spot(2, 17)]), 60, 6.0, 1.0)
-    with pytest.raises(ValueError, match="lesser weight of distance"):
-        search.ask(Targets(1.0, 30.0, 2.0, 0.1, 0.15, 5.0))
+def test_a_table_answers_other_weights_than_its_own() -> None:
+    graph, keys = random_graph(1), [Spot(0, 1), Spot(2, 17)]
+    every = every_walk(graph, keys, 60)
+    for weight in (0.0, 0.5, 50.0):
+        search = PreparedSearch.fill(lay_out(*graph, keys), 60, 6.0, weight)
+        for distance in np.linspace(0.6, 2.4, 7):
+            targets = Targets(distance, 30.0, 5.0, 0.1, 0.15, 5.0)
+            walk, exact = search.ask(targets).walk, every.least(targets)
+            assert (walk is None) == bool(np.isinf(exact))
+            if walk is not None:
+                assert walk.cost == pytest.approx(exact, abs=1e-6)
 
 
 def test_without_targets_the_cheapest_walk_wins() -> None:
@@ -60,9 +76,23 @@ def test_without_targets_the_cheapest_walk_wins() -> None:
     search = PreparedSearch.fill(lay_out(*graph, keys), 60, np.inf, 1.0)
     walk = search.ask(Targets(np.nan, np.nan, 1.0, 1.0, 1.0, 1.0)).walk
     assert walk is not None
-    exact = every_walk(graph, keys, 60).cost.min()
-    assert walk.cost == pytest.approx(exact)
-    assert walk.bound == pytest.approx(exact)
+    every = every_walk(graph, keys, 60)
+    assert walk.cost == pytest.approx(every.cost.min())
+    assert walk.bound == pytest.approx(every.cost.min())
+    assert walk.distance == pytest.approx(every.length[every.cost.argmin()])
+
+
+def test_time_alone_may_be_asked() -> None:
+    graph, keys = random_graph(1), [Spot(0, 1), Spot(2, 17)]
+    every = every_walk(graph, keys, 60)
+    for reach in (np.inf, 6.0):
+        search = PreparedSearch.fill(lay_out(*graph, keys), 60, reach, 1.0)
+        for steps in (25.0, 38.0, 52.0):
+            targets = Targets(np.nan, steps, 1.0, 0.05, 1.0, 4.0)
+            walk = search.ask(targets).walk
+            assert walk is not None
+            late = abs(every.steps - steps)
+            assert walk.cost == pytest.approx((every.cost + 0.05 * late)[late <= 4].min(), abs=1e-6)
 
 
 def test_loops_are_taken_as_often_as_the_distance_asks() -> None:
