@@ -10,8 +10,9 @@ from threadpoolctl import threadpool_limits
 from reperform.nodes.align.frame_views import FrameViews
 from reperform.nodes.declaration import Param, node
 from reperform.nodes.kernels.closest_point import closest_points
-from reperform.nodes.kernels.geodesic_reach import geodesic_reach
+from reperform.nodes.kernels.limb_lengths import limb_lengths
 from reperform.nodes.kernels.mesh_geometry import edges, face_areas, volume
+from reperform.nodes.kernels.motion_history import motion_history
 from reperform.nodes.kernels.registration import (
     Pull,
     Stage,
@@ -51,12 +52,13 @@ def register(
     cameras: Dataset[Cameras] | None = None,
     *,
     root: Annotated[
-        Literal["spread", "reach", "tree"],
+        Literal["limbs", "spread", "tree"],
         Param(
-            about="spread: the frame whose surface shows most; reach: whose surface reaches farthest along itself, for "
-            "arms that lie against loose clothes; tree: the tree's own root"
+            about="limbs: the frame whose limbs are clear of each other and of loose clothes; spread: whose surface "
+            "shows most; tree: the tree's own root"
         ),
-    ] = "spread",
+    ] = "limbs",
+    limbs: Annotated[int, Param("limbs", 1, 50, "of the performer, head included")] = 5,
     route: Annotated[
         Literal["takes", "tree"],
         Param(about="takes: each in time, joined by the tree's shortest edges; tree: along the tree"),
@@ -87,7 +89,8 @@ def register(
     """All takes in one topology: vertex i is the same point of the performer in every frame.
 
     From the root, each frame's surface is fitted along the branches of the tree: the parent's aligned mesh
-    is carried on by its motion (consecutive frames) or turned and shifted on the ground to where shape
+    is carried on by its motion (consecutive frames; where a take is entered, time is followed first in the direction
+    in which less moves, and that motion continued in the other) or turned and shifted on the ground to where shape
     histograms agree best (frames of other times or takes), then fitted from coarse to fine by deformation
     graphs, E = sum rho(x_i - y_i) + stiffness sum_(jk) |R_j a_jk - (g_k - g_j)|^2, with rho Welsch's loss
     of two-way closest points of compatible normals and a_jk the root's lengths in the parent's pose.
@@ -105,7 +108,8 @@ def register(
     Pauly, SGP 2008; Yao, Deng, Xu and Zhang, CVPR 2020 (Welsch loss); Bouguet, Intel 2001 (tracking).
     Departure: deformation graphs, robust two-way closest points and tracks in place of rigid patches, SIFT and one
     Laplacian solve (eq 2.2); by default each take is followed in time, where texture can be tracked; the root is
-    moved to a frame whose limbs are clear of each other, since what the root's surface joins can never come apart.
+    moved to a frame whose limbs are clear of each other and of the clothes, since what the root's surface joins can
+    never come apart.
     """
     if (footage is None) != (cameras is None):
         given, missing = ("cameras", "footage") if footage is None else ("footage", "cameras")
@@ -113,7 +117,8 @@ def register(
     frames = _frames(surfaces, tree)
     parent, order = np.asarray(tree.parent), np.asarray(tree.order)
     if root != "tree":
-        parent, order = rehang(parent, _most_spread(frames, order, root))
+        scores = _limb_scores(frames, limbs) if root == "limbs" else _spread_scores(frames)
+        parent, order = rehang(parent, int(order[np.argmax(scores[order])]))
     if route == "takes":
         parent, order = chain_takes(tree.take, tree.frame_index, tree.parent, tree.distance, int(order[0]))
     first = frames[order[0]]
@@ -127,12 +132,17 @@ def register(
     figures = {int(order[0]): (0.0, 0.0)}
     lengths = edges(template.faces)
     names = [(str(tree.takes[frame.take]), frame.instant) for frame in frames]
+    before, after = motion_history(
+        tree.take, tree.frame_index, parent, _NEAR, lambda k: _change(frames[int(parent[k])], frames[k])
+    )
 
     def visit(k: int) -> None:
         if k == order[0]:
             return
         target = fit_target(frames[k].vertices, frames[k].faces, pull.normal_length)
-        start = _start(template, frames, aligned, parent, k, target, stages[0].scale, pull)
+        start = _start(
+            template, frames, aligned, int(parent[k]), int(before[k]), k, target, stages[0].scale, pull
+        )
         tracker = None
         if views is not None:
             up = int(parent[k])
@@ -142,7 +152,7 @@ def register(
 
     # the banded solves are small: several BLAS threads would only wait for each other, and could change bits
     with threadpool_limits(limits=1, user_api="blas"):
-        walk_tree(parent, order, visit, _THREADS)
+        walk_tree(*rehang(after, int(order[0])), visit, _THREADS)
     return {
         name: _sequence(
             surfaces[name], tree, number, template, aligned, figures, order[0], (residual_gate, stretch_gate)
@@ -179,18 +189,33 @@ def _frames(surfaces: Dataset[Surfaces], tree: ShapeTree) -> list[_Frame]:
     ]
 
 
-def _most_spread(frames: list[_Frame], order: np.ndarray, root: str) -> int:
-    """The frame with most surface for its volume, or that reaches farthest; less 2 % per handle; ties to the first."""
-    scores = []
-    for frame in frames:
-        handles = max(1 - (len(frame.vertices) - len(frame.faces) // 2) / 2, 0)
-        if root == "reach":
-            score = geodesic_reach(frame.vertices, frame.faces)
-        else:
-            size = max(float(volume(frame.vertices, frame.faces)), 1e-9) ** (2 / 3)
-            score = float(face_areas(frame.vertices, frame.faces).sum()) / size
-        scores.append(score * 0.98**handles)
-    return int(order[np.argmax(np.array(scores)[order])])
+def _limb_scores(frames: list[_Frame], limbs: int) -> np.ndarray:
+    """How clear the limbs of each frame are of all else: its shortest limb, as a share of how long it is in any frame.
+
+    Less the share that what stands out besides has of the mean limb, less 2 % per handle.
+    """
+    lengths = np.array([limb_lengths(frame.vertices, frame.faces, limbs + 1) for frame in frames])
+    own, other = lengths[:, :limbs], lengths[:, limbs]
+    shortest = (own / np.maximum(own.max(axis=0), 1e-9)).min(axis=1)
+    return shortest * (1 - other / np.maximum(own.mean(axis=1), 1e-9)) * _without_handles(frames)
+
+
+def _spread_scores(frames: list[_Frame]) -> np.ndarray:
+    """How much surface each frame has for its volume, less 2 % per handle."""
+    area = np.array([face_areas(frame.vertices, frame.faces).sum() for frame in frames], np.float64)
+    size = np.array([volume(frame.vertices, frame.faces) for frame in frames])
+    return area / np.maximum(size, 1e-9) ** (2 / 3) * _without_handles(frames)
+
+
+def _without_handles(frames: list[_Frame]) -> np.ndarray:
+    """1 for a closed surface without handles, 2 % less per handle."""
+    handles = [max(1 - (len(frame.vertices) - len(frame.faces) // 2) / 2, 0) for frame in frames]
+    return 0.98 ** np.array(handles)
+
+
+def _change(first: _Frame, second: _Frame) -> float:
+    """How far the surface moves between two frames: the mean distance (m) from the second to the first."""
+    return float(closest_points(second.vertices[::8], first.vertices, first.faces)[2].mean())
 
 
 def _stages(
@@ -207,22 +232,21 @@ def _start(
     template: Template,
     frames: list[_Frame],
     aligned: dict[int, np.ndarray],
-    parent: np.ndarray,
+    up: int,
+    before: int,
     k: int,
     target: FitTarget,
     scale: float,
     pull: Pull,
 ) -> np.ndarray:
     """The pose to start from: the best of what the way to this frame suggests."""
-    up = int(parent[k])
     here, there = frames[k], frames[up]
     step = here.instant - there.instant
     if here.take == there.take and abs(step) <= _NEAR:
         options = [aligned[up]]
-        before = frames[int(parent[up])]
-        came = there.instant - before.instant
-        if before.take == there.take and 0 < abs(came) <= _NEAR and came * step > 0:
-            options.append(predict(template, aligned[up], aligned[int(parent[up])], step / came))
+        if before >= 0:
+            came = there.instant - frames[before].instant
+            options.append(predict(template, aligned[up], aligned[before], step / came))
         costs = [misfit(template, pose, target, scale, pull) for pose in options]
         return options[int(np.argmin(costs))]
     turns = [(0.0, here.vertices.mean(axis=0) - there.vertices.mean(axis=0))]

@@ -101,6 +101,61 @@ def test_spread_chooses_the_surface_with_clear_limbs(surfaces, tree):
     assert (str(found["nod"].root_take), int(found["nod"].root_frame)) == ("nod", 3)
 
 
+def _lumps(*lumps):
+    """One closed surface: a ball with bumps (direction, height, sharpness)."""
+    ball = trimesh.creation.icosphere(3)
+    radius = np.full(len(ball.vertices), 0.3)
+    for direction, height, sharpness in lumps:
+        away = ((ball.vertices - np.array(direction) / np.linalg.norm(direction)) ** 2).sum(axis=1)
+        radius += height * np.exp(-sharpness * away)
+    return (ball.vertices * radius[:, None] + (0, 1, 0)).astype(np.float32), ball.faces.astype(np.int32)
+
+
+def _still(shapes):
+    vertices, faces = zip(*shapes, strict=True)
+    take, frame = np.zeros(len(shapes), np.int32), np.arange(len(shapes), dtype=np.int32)
+    tree = ShapeTree(np.array(["still"]), take, frame, np.maximum(frame - 1, 0), np.ones(len(shapes)), frame)
+    return {"still": Surfaces(Ragged(vertices), Ragged(faces), np.float32(25))}, tree
+
+
+def test_limbs_chooses_the_frame_whose_least_free_limb_is_freest():
+    arm, leg, head = ((1, 0, 0), 0.5, 12), ((-0.2, -1, 0.1), 0.6, 12), ((0.1, 1, 0.3), 0.3, 12)
+    cape = ((1, 0.1, 0.2), 0.5, 1.5)
+    surfaces, tree = _still(
+        [
+            # one limb longer, another shorter
+            _lumps((leg[0], 1.0, 12), head, (arm[0], 0.1, 12)),
+            _lumps(leg, head, arm, cape),
+            _lumps(leg, head, arm),
+            # most surface for its volume, since something stands out that is no limb
+            _lumps(leg, head, arm, ((0, 0, -1), 0.3, 12)),
+        ]
+    )
+    quick = {"patches": 8, "levels": 1, "iterations": 1}
+    found = {
+        root: int(register(surfaces, tree, root=root, limbs=3, **quick)["still"].root_frame)
+        for root in ("limbs", "spread", "tree")
+    }
+    assert found == {"limbs": 2, "spread": 3, "tree": 0}
+
+
+def test_the_way_on_which_less_moves_tells_the_motion_of_the_other():
+    ball = trimesh.creation.icosphere(2)
+    rod, faces = (
+        ball.vertices * (0.05, 0.3, 0.07) + (0, 0.1, 0) * ball.vertices[:, :1],
+        ball.faces.astype(np.int32),
+    )
+    # from the root, frame 1, the way back is 0.16 m; the way on is farther than any closest point pulls
+    places = np.array([(-0.16, 0.5, 0), (0, 0.5, 0), (0.37, 0.5, 0)])
+    surfaces, tree = _still([((rod + place).astype(np.float32), faces) for place in places])
+    parent, order = np.array([1, 1, 1], np.int32), np.array([1, 0, 2], np.int32)
+    tree = tree._replace(parent=parent, order=order)
+    found = register(surfaces, tree, root="tree", patches=8, levels=1, iterations=10, reach=0.08)
+    np.testing.assert_allclose(
+        found["still"].mesh.vertices.mean(axis=1), rod.mean(axis=0) + places, atol=0.02
+    )
+
+
 def test_refuses_a_tree_of_other_surfaces(surfaces, tree):
     with pytest.raises(ValueError, match="3 frames of take turned, the surfaces have no such take"):
         register({"nod": surfaces["nod"]}, tree)
