@@ -20,6 +20,20 @@ def earth_movers(supply: np.ndarray, demand: np.ndarray, cost: np.ndarray, above
     Source: Rubner, Tomasi and Guibas 2000, IJCV 40; Dantzig 1951; Cunningham 1976, Mathematical Programming 11
     (leaving arc).
     """
+    return _optimum(supply, demand, cost, above)[0]
+
+
+@njit(cache=True, nogil=True)
+def row_potentials(supply: np.ndarray, demand: np.ndarray, cost: np.ndarray) -> np.ndarray:
+    """Potentials (N,) of the rows of a least-cost flow: u_i + v_j <= cost_ij for some v, equal where it flows."""
+    return _optimum(supply, demand, cost, np.inf)[1][: len(supply)]
+
+
+@njit(cache=True, nogil=True)
+def _optimum(
+    supply: np.ndarray, demand: np.ndarray, cost: np.ndarray, above: float
+) -> tuple[float, np.ndarray]:
+    """The least cost, or inf, and the potentials of all rows and columns."""
     rows, columns = cost.shape
     parent, flow = _rooted(*_row_minimum(supply, demand, cost), rows)
     nodes = rows + columns
@@ -61,12 +75,12 @@ def earth_movers(supply: np.ndarray, demand: np.ndarray, cost: np.ndarray, above
         if row == rows:
             row = 0
             if above < np.inf and _bound(supply, demand, cost, potential) > above:
-                return np.inf
+                return np.inf, potential
     total = 0.0
     for node in range(1, nodes):
         a, b = node, parent[node]
         total += flow[node] * (cost[a, b - rows] if a < rows else cost[b, a - rows])
-    return total if total <= above else np.inf
+    return (total if total <= above else np.inf), potential
 
 
 @njit(cache=True, nogil=True)

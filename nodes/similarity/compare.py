@@ -1,4 +1,4 @@
-"""Four measures of dissimilarity side by side."""
+"""Measures of dissimilarity side by side."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from reperform.nodes.product import Pairs
 from reperform.nodes.products.measure_comparison import MeasureComparison
 from reperform.nodes.products.motion import Dissimilarity
 
-NAMES = ("shape and colour", "shape", "vertices", "skeleton")
+NAMES = ("shape and colour", "shape", "vertices", "skeleton", "deformation gradient")
 
 
 @node(over="dataset", memory=1.0)
@@ -22,12 +22,13 @@ def compare(
     shape: Pairs[Dissimilarity],
     vertex: Pairs[Dissimilarity],
     skeleton: Pairs[Dissimilarity],
+    deformation_gradient: Pairs[Dissimilarity] | None = None,
     *,
     transitions: Annotated[int, Param("1", 0, 100, "kept per ordered pair of takes (N)")] = 4,
     half_length: Annotated[int, Param("frame", 1, 100, "of the window over which costs are taken (L)")] = 4,
     apart: Annotated[int, Param("frame", 0, 1000, "least time between both ends within one take")] = 10,
 ) -> MeasureComparison:
-    """The matrices of all takes under four measures, and where each would pass from take to take.
+    """The matrices of all takes under four or five measures, and where each would pass from take to take.
 
     Transitions are the N local minima of least cost sum_k (L - |k|) c(m + k, n + k) / L^2, |k| < L, that differ by
     at least L in m or n.
@@ -36,7 +37,8 @@ def compare(
 
     Source: 000 section 4.2, fig 4 (L = 4, N = 4).
     """
-    products = (shape_colour, shape, vertex, skeleton)
+    given = (shape_colour, shape, vertex, skeleton, deformation_gradient)
+    products = [product for product in given if product is not None]
     takes = list(dict.fromkeys(a for a, _ in shape_colour))
     frames = [int(shape_colour[take, take].distance.shape[0]) for take in takes]
     whole = np.stack([_whole(product, takes, frames) for product in products])
@@ -60,7 +62,7 @@ def compare(
     table = np.array(rows, np.float64).reshape(-1, 6)
     measure, source, target, m, n = table[:, :5].T.astype(np.int32)
     return MeasureComparison(
-        np.array(NAMES), np.array(takes), np.array(frames, np.int32), whole.astype(np.float32),
+        np.array(NAMES[: len(products)]), np.array(takes), np.array(frames, np.int32), whole.astype(np.float32),
         measure, source, target, m, n, table[:, 5].copy(), np.asarray(half_length, np.int32),
     )  # fmt: skip
 

@@ -9,15 +9,17 @@ import numpy as np
 from reperform.nodes.declaration import Param, node
 from reperform.nodes.kernels.signatures import Signatures, common_planes, merged, signatures
 from reperform.nodes.kernels.temporal_filter import filter_diagonals
-from reperform.nodes.kernels.turned_transport import turned, turned_transport
+from reperform.nodes.kernels.turned_transport import exact_transport, turned, turned_transport
 from reperform.nodes.product import Pair
 from reperform.nodes.products.motion import Dissimilarity
 from reperform.nodes.products.shape_colour import ShapeColourHistograms
 
 # cells by which the turns to be tried are chosen, first many turns by few cells, then few turns by more
-_ROUGH, _MIDDLE = 16, 64
+_ROUGH, _MIDDLE = 24, 64
 # the second margin's share of the first one's
-_CLOSER = 0.4
+_CLOSER = 0.2
+# cells from which distances of all bins are bounded, where these are solved
+_BOUNDING = 160
 
 
 @node(over="pair", memory=0.5)
@@ -35,7 +37,7 @@ def shape_colour(
     ] = 20,
     margin: Annotated[
         float, Param("1", 1.0, 100.0, "turns are tried whose rough distance is under this times the least")
-    ] = 1.1,
+    ] = 1.15,
     filter_frames: Annotated[
         int, Param("frame", 0, 25, "frames before and after over which the matrix is averaged in time")
     ] = 0,
@@ -47,10 +49,11 @@ def shape_colour(
         squared distance over which a share of the surface is moved
 
     EMD is the least mean distance over which the surface must be moved to make one histogram of the other. All
-    filled bins of both takes are cut by common planes into `clusters` cells; each frame, at each turn, is represented
-    by what its cells hold, and EMD between those is exact (with 0 clusters: of all filled bins). It is within
-    delta_a + delta_b of the full one, delta the mean distance of bins from the points that stand for them. The
-    turns worth trying are chosen by rougher cuts.
+    filled bins of both takes, one of them at all turns, are cut by common planes into `clusters` cells; each frame,
+    at each turn, is represented by what its cells hold, and EMD between those is exact. It is within delta_a +
+    delta_b of the full one, delta the mean distance of bins from the points that stand for them. The turns worth
+    trying are chosen by rougher cuts. With 0 clusters, EMD of all filled bins is solved, at every turn that a lower
+    bound does not rule out: the least is proved.
 
     Raises ValueError where the histograms differ in bins or reach.
 
@@ -68,21 +71,21 @@ def shape_colour(
     same = _equal(a, b)
     first, second = (shape_colour_signatures(take, colour_weight) for take in histograms)
     every = turned(second, turns)
-    levels = [_level((first, every), (first, second), count) for count in (_ROUGH, _MIDDLE)]
-    fine = _level((first, every), (first, second), clusters) if clusters else (first, every)
-    margins = (margin, 1 + _CLOSER * (margin - 1)) if clusters else (np.inf, np.inf)
-    distance = turned_transport(levels[0], levels[1], fine, turns, margins, same)
+    if clusters:
+        rough, middle, fine = (_level(first, every, count) for count in (_ROUGH, _MIDDLE, clusters))
+        margins = (margin, 1 + _CLOSER * (margin - 1))
+        distance = turned_transport(rough, middle, fine, turns, margins, same)
+    else:
+        distance = exact_transport((first, every), _level(first, every, _BOUNDING), turns, same)
     if same:
         distance += distance.T
     return Dissimilarity(filter_diagonals(distance, filter_frames).astype(np.float32))
 
 
-def _level(
-    takes: tuple[Signatures, Signatures], planned: tuple[Signatures, Signatures], count: int
-) -> tuple[Signatures, Signatures]:
-    """Both takes by `count` common cells."""
-    planes = common_planes(planned, count)
-    return merged(takes[0], planes), merged(takes[1], planes)
+def _level(take: Signatures, every: Signatures, count: int) -> tuple[Signatures, Signatures]:
+    """A take and the turned other one by `count` common cells."""
+    planes = common_planes((take, every), count)
+    return merged(take, planes), merged(every, planes)
 
 
 def shape_colour_signatures(histograms: ShapeColourHistograms, colour_weight: float) -> Signatures:

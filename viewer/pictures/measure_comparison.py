@@ -22,7 +22,7 @@ def measure_comparison_picture(product: MeasureComparison, frame: int, look: Loo
     with figure(look.size, "compressed") as fig:
         axes = fig.subplots(rows, columns, squeeze=False)
         for k, axis in enumerate(axes.ravel()):
-            axis.set_axis_off() if k >= len(names) else _draw(axis, product, k, k // columns == rows - 1)
+            axis.set_axis_off() if k >= len(names) else _draw(axis, product, k, k + columns >= len(names))
         if look.title:
             fig.suptitle(look.title)
         return pixels(fig)

@@ -6,7 +6,7 @@ from reperform.nodes.products.shape_colour import ShapeColourHistograms
 from reperform.nodes.ragged import Ragged
 
 
-def _take(phase, frames, entries=30):
+def _take(phase, frames, entries=10):
     """A cloud that swings: every frame is another mixture of two poses."""
     rng = np.random.default_rng(7)
     rest, swing = rng.normal(size=(2, entries, 3)) * (0.2, 0.5, 0.3)
@@ -24,15 +24,16 @@ def _take(phase, frames, entries=30):
     )
 
 
-def test_with_more_cells_than_bins_hardly_anything_is_missed():
+def test_with_more_cells_than_bins_at_all_turns_hardly_anything_is_missed():
     takes = {"walk": _take(0.0, 16), "jog": _take(1.3, 18)}
-    found = shape_colour_accuracy(takes, pairs=12, all_turns=3, candidates=5, half_length=2)
+    found = shape_colour_accuracy(takes, pairs=12, candidates=5, half_length=2)
     value = dict(zip(found.name.tolist(), found.value[0].tolist(), strict=True))
     assert value["frames"] == 34
     assert value["spearman"] > 0.98
     np.testing.assert_allclose(value["mean ratio"], 1, atol=0.02)
     assert value["solver difference"] < 1e-9
-    assert value["turn agreement"] == value["top4 agreement"] == 1
+    assert 1 <= value["turns solved"] < 20
+    assert value["top4 agreement"] == 1
     assert value["speedup"] > 0
 
 

@@ -2,7 +2,7 @@ import numpy as np
 import ot
 import pytest
 
-from reperform.nodes.kernels.transport import earth_movers
+from reperform.nodes.kernels.transport import earth_movers, row_potentials
 
 
 def _problem(rows, columns, seed=0):
@@ -47,3 +47,10 @@ def test_says_when_a_value_is_passed_and_only_then():
     value = ot.emd2(*problem)
     assert earth_movers(*problem, 0.9 * value) == np.inf
     np.testing.assert_allclose(earth_movers(*problem, 1.01 * value), value, rtol=1e-10)
+
+
+def test_potentials_prove_the_least_cost():
+    supply, demand, cost = _problem(40, 55, 6)
+    u = row_potentials(supply, demand, cost)
+    v = (cost - u[:, None]).min(axis=0)
+    np.testing.assert_allclose(supply @ u + demand @ v, ot.emd2(supply, demand, cost), rtol=1e-10)

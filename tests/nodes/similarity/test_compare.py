@@ -38,3 +38,11 @@ def test_refuses_measures_of_other_frames():
     a = _pairs(0)
     with pytest.raises(ValueError, match="must compare walk with walk, 14 x 14 frames"):
         compare(a, _pairs(1, {"walk": 13, "jog": 17}), a, a)
+
+
+def test_deformation_gradients_are_a_fifth_measure():
+    measures = [_pairs(k) for k in range(5)]
+    four, five = compare(*measures[:4]), compare(*measures)
+    assert five.measures.tolist() == [*four.measures.tolist(), "deformation gradient"]
+    np.testing.assert_array_equal(five.distance[:4], four.distance)
+    np.testing.assert_array_equal(five.distance[4, :14, 14:], measures[4]["walk", "jog"].distance)
