@@ -11,9 +11,15 @@ from reperform.nodes.kernels.graph_moves import Moves
 
 # Step of arc length in which the least remaining cost is tabled, m.
 REST_STEP = 0.0025
-# Walks whose bodies stand in one cell of the ground, this wide (m), facing one way within this angle (rad), at one
-# frame and one stretch of the curve, are one walk: the cheapest is followed.
-_CELL, _ANGLE, _STRETCH = 0.02, 0.035, 0.05
+# Walks are tabled by stretches of the curve, m, and the frame they have come to.
+_STRETCH = 0.05
+# Two of one place in the table that are this near each other on the ground (m), in direction (rad) and in arc length
+# (m) are one walk: the more promising is followed.
+_CELL, _ANGLE, _ARC = 0.05, 0.1, 0.01
+# Walks kept of one stretch and frame: as many as there are ways for a standing body to face, and some.
+_KEPT = 64
+# Where a stretch is crowded, so many of one frame are followed, so that they differ.
+_OF_ONE_FRAME = 4
 # To tell which walks are promising, each is thought on straight for this arc length (m), as if in so many frames.
 _PREVIEW, _AHEAD = 0.6, 12
 
@@ -179,14 +185,21 @@ def curve_walk(trail: Trail, rest: np.ndarray, starts: Starts, beam: int) -> Cur
 
         cost = sum of the moves' costs + distance_weight sum over frames |body - curve(arc length walked)|
 
-    Of walks that stand alike (one frame, one cell of place and direction, one stretch of the curve) the cheapest is
-    followed, and of each stretch and frame the `beam` most promising: those with the least cost + rest + what the next
-    half second would add if they went straight on. Where neither sets anything aside the walk is the optimum.
+    Of walks that stand alike (one frame, nearly one place, direction and arc length) the more promising is followed,
+    and of each stretch of the curve the `beam` most promising, at most four of one frame where there are more: those
+    with the least cost + rest + what the next half second would add if they went straight on. Where nothing is set
+    aside the walk is the optimum.
 
     Source: Boukhayma and Boyer 2015, 3DV (002 section 4, eq 8). Departure: a table over arc length in place of
     depth-first search.
     """
-    found = _search(trail, rest, starts.frame.astype(np.int64), first_states(starts), beam)
+    along = np.concatenate(
+        [[0.0], np.cumsum(np.linalg.norm(np.diff(trail.middle[:, [0, 2]], axis=0), axis=1))]
+    )
+    farthest = float((along[trail.first[1:] - 1] - along[trail.first[:-1]]).max())
+    # a move ends at most so many stretches on: the table's rows are used in turn
+    table = _table(int(farthest / _STRETCH) + 3, len(trail.leaving) - 1, min(_KEPT, beam))
+    found = _search(trail, rest, starts.frame.astype(np.int64), first_states(starts), beam, table)
     parent, move, best, cost, expanded = found
     if best < 0:
         return None
@@ -195,6 +208,24 @@ def curve_walk(trail: Trail, rest: np.ndarray, starts: Starts, beam: int) -> Cur
         chain.append(int(move[best]))
         best = int(parent[best])
     return CurveWalk(tuple(reversed(chain)), int(-1 - parent[best]), float(cost), int(expanded))
+
+
+class _Table(NamedTuple):
+    """Walks by row (a stretch of the curve), frame and place, the first filled[row, frame] of them."""
+
+    state: np.ndarray  # (rows, N, places, 7)
+    value: np.ndarray  # (rows, N, places) the less, the more promising
+    step: np.ndarray  # (rows, N, places) how it came there, a number of the log
+    waits: np.ndarray  # (rows, N, places) bool, to be followed
+    filled: np.ndarray  # (rows, N)
+
+
+def _table(rows: int, frames: int, places: int) -> _Table:
+    size = (rows, frames, places)
+    return _Table(
+        np.empty((*size, 7)), np.empty(size), np.empty(size, np.int64), np.zeros(size, bool),
+        np.zeros((rows, frames), np.int64),
+    )  # fmt: skip
 
 
 @njit(cache=True, nogil=True)
@@ -216,117 +247,123 @@ def _ahead(trail: Trail, node: int, state: np.ndarray) -> float:
 
 
 @njit(cache=True, nogil=True)
-def _cell(node: int, state: np.ndarray) -> int:
-    """One number, never negative, for walks that stand alike: frame, direction and place."""
-    turns = int(np.ceil(2 * np.pi / _ANGLE))
-    turn = int(np.floor(state[0] / _ANGLE)) % turns
-    x, z = int(np.floor(state[4] / _CELL)) % 4096, int(np.floor(state[5] / _CELL)) % 4096
-    return ((node * turns + turn) * 4096 + x) * 4096 + z
+def _alike(one: np.ndarray, other: np.ndarray) -> bool:
+    return (
+        abs(one[3] - other[3]) < _ARC
+        and abs(one[4] - other[4]) < _CELL
+        and abs(one[5] - other[5]) < _CELL
+        and np.cos(one[0] - other[0]) > np.cos(_ANGLE)
+    )
 
 
 @njit(cache=True, nogil=True)
-def _place_of(key: int, keys: np.ndarray) -> int:
-    """Where a cell stands in an open-addressed table, or the free place (-1) where it belongs."""
-    place = (key * 0x9E3779B1 >> 7) % len(keys)
-    while keys[place] >= 0 and keys[place] != key:
-        place = (place + 1) % len(keys)
-    return place
+def _place(table: _Table, row: int, node: int, state: np.ndarray, value: float) -> int:
+    """Where a walk goes in the table, those like it gone from there; -1: it is not promising enough."""
+    count = table.filled[row, node]
+    alike, worst = -1, 0
+    for k in range(count):
+        if table.value[row, node, k] < np.inf and _alike(table.state[row, node, k], state):
+            if table.value[row, node, k] <= value:
+                return -1
+            table.value[row, node, k], table.waits[row, node, k] = np.inf, False
+            alike = k
+        if table.value[row, node, k] > table.value[row, node, worst]:
+            worst = k
+    if alike >= 0:
+        return alike
+    if count < table.value.shape[2]:
+        table.filled[row, node] += 1
+        return count
+    return worst if value < table.value[row, node, worst] else -1
+
+
+@njit(cache=True, nogil=True)
+def _chosen(table: _Table, row: int, beam: int) -> tuple[np.ndarray, np.ndarray]:
+    """Frames and places of those to be followed now, the most promising first; none waits any more."""
+    total = np.count_nonzero(table.waits[row])
+    node, place, value = np.empty(total, np.int64), np.empty(total, np.int64), np.empty(total)
+    count = 0
+    for i in range(table.filled.shape[1]):
+        for k in range(table.filled[row, i]):
+            if table.waits[row, i, k]:
+                node[count], place[count], value[count] = i, k, table.value[row, i, k]
+                count += 1
+                table.waits[row, i, k] = False
+    order = np.argsort(value, kind="mergesort")
+    if total > beam:
+        of_one, few = np.zeros(table.filled.shape[1], np.int64), 0
+        for o in order:
+            if few < beam and of_one[node[o]] < _OF_ONE_FRAME:
+                of_one[node[o]] += 1
+                order[few] = o
+                few += 1
+        order = order[:few]
+    return node[order], place[order]
 
 
 @njit(cache=True, nogil=True)
 def _search(
-    trail: Trail, rest: np.ndarray, frames: np.ndarray, states: np.ndarray, beam: int
+    trail: Trail, rest: np.ndarray, frames: np.ndarray, states: np.ndarray, beam: int, table: _Table
 ) -> tuple[np.ndarray, np.ndarray, int, float, int]:
-    size = max(1 << 16, 2 * len(frames))
-    node, parent, move = np.empty(size, np.int64), np.empty(size, np.int64), np.empty(size, np.int64)
-    state, after = np.empty((size, 7)), np.empty(size, np.int64)
-    bins = int(trail.length / _STRETCH) + 1
-    head = np.full(bins, -1, np.int64)
+    rows = table.filled.shape[0]
+    parent, move = np.empty(1 << 16, np.int64), np.empty(1 << 16, np.int64)
     used, best, least, expanded = 0, -1, np.inf, 0
-    for k in range(len(frames)):
-        if _rest_at(rest, frames[k], 0.0) < np.inf:
-            node[used], parent[used], move[used], state[used] = frames[k], -1 - k, -1, states[k]
-            after[used], head[0] = head[0], used
-            used += 1
     out = np.empty(7)
-    kept = np.zeros(len(trail.leaving) - 1, np.int64)
-    for b in range(bins):
-        keys, least_of = np.full(1 << 12, -1, np.int64), np.empty(1 << 12)
-        filled = 0
-        while head[b] >= 0:
-            count, at = 0, head[b]
-            while at >= 0:
-                count, at = count + 1, after[at]
-            keys, least_of = _roomy(keys, least_of, filled + count)
-            here, bound = np.empty(count, np.int64), np.empty(count)
-            count, at = 0, head[b]
-            while at >= 0:
-                key = _cell(node[at], state[at])
-                place = _place_of(key, keys)
-                total = state[at, 6]
-                below = total + _rest_at(rest, node[at], state[at, 3])
-                if below < least and (keys[place] < 0 or total < least_of[place]):
-                    filled += keys[place] < 0
-                    keys[place], least_of[place] = key, total
-                    here[count], bound[count] = at, below + _ahead(trail, node[at], state[at])
-                    count += 1
-                at = after[at]
-            head[b] = -1
-            kept[:] = 0
-            for o in np.argsort(bound[:count], kind="mergesort"):
-                at = here[o]
-                if kept[node[at]] == beam:
-                    continue
-                kept[node[at]] += 1
-                # the cheapest of a cell may have come after this one
-                if state[at, 6] > least_of[_place_of(_cell(node[at], state[at]), keys)]:
-                    continue
-                for e in range(trail.leaving[node[at]], trail.leaving[node[at] + 1]):
-                    expanded += 1
-                    if not follow(trail, e, state[at], out):
-                        continue
-                    to = trail.target[e]
-                    if out[3] >= trail.length:
-                        bounded = out[6]
-                    else:
-                        bounded = out[6] + _rest_at(rest, to, out[3])
-                    if bounded >= least:
-                        continue
-                    if used == size:
-                        size *= 2
-                        node, parent, move = _grown(node), _grown(parent), _grown(move)
-                        after = _grown(after)
-                        larger = np.empty((size, 7))
-                        larger[:used] = state
-                        state = larger
-                    node[used], parent[used], move[used], state[used] = to, at, e, out
-                    if out[3] >= trail.length:
-                        best, least = used, out[6]
-                    else:
-                        row = int(out[3] / _STRETCH)
-                        after[used], head[row] = head[row], used
+    for b in range(int(trail.length / _STRETCH) + 1):
+        row, setting_out = b % rows, b == 0
+        while True:
+            if setting_out:
+                # all of them are followed: they may differ in direction only
+                node, place = frames, np.arange(len(frames))
+            else:
+                node, place = _chosen(table, row, beam)
+            if len(node) == 0:
+                break
+            for i, k in zip(node, place):  # noqa: B905
+                if setting_out:
+                    here, step = states[k], used
+                    parent, move = _roomy(parent, used), _roomy(move, used)
+                    parent[used], move[used] = -1 - k, -1
                     used += 1
+                elif table.waits[row, i, k] or table.value[row, i, k] == np.inf:
+                    # its place was taken since, or it is like a more promising one
+                    continue
+                else:
+                    # a copy: one that ends in the same stretch may take this place
+                    here, step = table.state[row, i, k].copy(), table.step[row, i, k]
+                if here[6] + _rest_at(rest, i, here[3]) >= least:
+                    continue
+                for e in range(trail.leaving[i], trail.leaving[i + 1]):
+                    expanded += 1
+                    if not follow(trail, e, here, out):
+                        continue
+                    to, arrived = trail.target[e], out[3] >= trail.length
+                    bound = out[6] if arrived else out[6] + _rest_at(rest, to, out[3])
+                    if bound >= least:
+                        continue
+                    then, free = int(out[3] / _STRETCH) % rows, 0
+                    if not arrived:
+                        value = bound + _ahead(trail, to, out)
+                        free = _place(table, then, to, out, value)
+                        if free < 0:
+                            continue
+                        table.state[then, to, free], table.value[then, to, free] = out, value
+                        table.step[then, to, free], table.waits[then, to, free] = used, True
+                    else:
+                        best, least = used, out[6]
+                    parent, move = _roomy(parent, used), _roomy(move, used)
+                    parent[used], move[used] = step, e
+                    used += 1
+            setting_out = False
+        table.filled[row] = 0
     return parent[:used], move[:used], best, least, expanded
 
 
 @njit(cache=True, nogil=True)
-def _grown(array: np.ndarray) -> np.ndarray:
+def _roomy(array: np.ndarray, used: int) -> np.ndarray:
+    """The array, made larger where it is full."""
+    if used < len(array):
+        return array
     larger = np.empty(2 * len(array), array.dtype)
     larger[: len(array)] = array
     return larger
-
-
-@njit(cache=True, nogil=True)
-def _roomy(keys: np.ndarray, values: np.ndarray, wanted: int) -> tuple[np.ndarray, np.ndarray]:
-    """The table, made larger until at most half of it is taken once `wanted` cells are in it."""
-    size = len(keys)
-    while size < 2 * wanted:
-        size *= 2
-    if size == len(keys):
-        return keys, values
-    larger, moved = np.full(size, -1, np.int64), np.empty(size)
-    for k in range(len(keys)):
-        if keys[k] >= 0:
-            place = _place_of(keys[k], larger)
-            larger[place], moved[place] = keys[k], values[k]
-    return larger, moved

@@ -46,8 +46,8 @@ def along_curve(
         Literal["arc_length", "depth_first"], Param(about="the table over arc length, or the seed's")
     ] = ("arc_length"),
     beam: Annotated[
-        int, Param("1", 1, 100_000, "walks followed per stretch of 5 cm and frame, the most promising")
-    ] = 4,
+        int, Param("1", 1, 100_000, "walks followed per stretch of 5 cm, the most promising")
+    ] = 1000,
     expansions: Annotated[int, Param("1", 1, 10**10, "moves that depth_first tries at most")] = 20_000_000,
 ) -> PoseWalk:
     """The motion of least cost whose body follows a curve, doing what is prescribed on stretches of it.

@@ -37,18 +37,49 @@ def database():
     return essential(pairs), likeness, meshes
 
 
+CURVE = ((0, 0), (0.1, 0.5), (0.4, 0.8))
+
+
+def column(out, name):
+    return out.value[:, out.name.tolist().index(name)]
+
+
 def test_small_problems_are_solved_to_the_optimum_and_depth_first_is_no_cheaper(database):
     out = curve_search(
-        *database,
-        curve=((0, 0), (0.1, 0.5), (0.4, 0.8)),
-        distance_weight=1.0,
-        patience=20.0,
-        small=3,
-        length=0.4,
-        beam=50,
+        *database, curve=CURVE, distance_weight=1.0, patience=20.0, curves=2, way=1.2, small=3, length=0.4
     )
-    values = dict(zip(out.name.tolist(), out.value[0], strict=True))
-    assert values["proved"] == 1.0
-    assert 0.0 <= values["gap"] < 0.02
-    assert values["cost ratio"] <= 1.02
-    assert values["speedup"] > 0
+    assert out.value.shape == (1 + 2 + 3, 6)
+    assert (column(out, "proved")[3:] == 1.0).all()
+    assert (column(out, "gap")[3:] >= 0.0).all()
+    assert (column(out, "gap")[3:] < 0.02).all()
+    assert np.isnan(column(out, "gap")[:3]).all()
+    assert (column(out, "speedup")[:3] > 0).all()
+    # it is cut off, or it got as cheap and is told so
+    reached, ratio = column(out, "reached")[:3], column(out, "cost ratio")[:3]
+    assert ((reached == 1.0) == (ratio >= 1.0)).all()
+    assert (column(out, "speedup")[:3][reached == 0.0] >= 20.0).all()
+
+
+def test_a_search_that_may_follow_one_walk_only_shows_its_gap(database):
+    few, many = (
+        curve_search(
+            *database,
+            curve=CURVE,
+            distance_weight=1.0,
+            patience=1.0,
+            curves=0,
+            small=6,
+            length=0.5,
+            beam=beam,
+        )
+        for beam in (1, 1000)
+    )
+    assert np.nanmax(column(few, "gap")) > np.nanmax(column(many, "gap"))
+
+
+def test_problems_that_could_not_be_proved_are_told(database):
+    out = curve_search(
+        *database, curve=CURVE, distance_weight=1.0, patience=1.0, curves=0, small=3, length=0.4, most=1
+    )
+    assert (column(out, "proved")[1:] == 0.0).all()
+    assert np.isnan(column(out, "gap")[1:]).all()

@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from reperform.nodes.kernels.curve_reach import curve_reach
 from reperform.nodes.kernels.curve_walk import Curve, Starts, curve_walk, remaining_cost, trail
 from reperform.nodes.kernels.depth_first_walk import depth_first_walk
 from reperform.nodes.kernels.graph_moves import graph_moves, play_moves
@@ -72,6 +73,45 @@ def test_it_finds_what_going_through_all_walks_finds(moves, turn, length):
     blind, done = depth_first_walk(problem, None, begin, 20_000_000)
     assert done
     np.testing.assert_allclose(blind.cost, every.cost)
+    bounded, done = depth_first_walk(problem, rest, begin, 20_000_000, reach=curve_reach(moves, 12))
+    assert done
+    np.testing.assert_allclose(bounded.cost, every.cost)
+    assert bounded.expanded <= every.expanded
+
+
+def test_depth_first_search_stops_where_it_is_told_to(moves):
+    curve = bend(0.9, 0.9)
+    problem, rest, begin = trail(moves, curve, 2.0), remaining_cost(moves, curve), starts(moves)
+    every, _ = depth_first_walk(problem, rest, begin, 20_000_000)
+    early, done = depth_first_walk(problem, None, begin, 20_000_000, enough=1.5 * every.cost)
+    whole, _ = depth_first_walk(problem, None, begin, 20_000_000)
+    assert not done
+    assert every.cost <= early.cost <= 1.5 * every.cost
+    assert early.expanded < whole.expanded
+    same, _ = depth_first_walk(problem, rest, begin, 20_000_000, below=every.cost * (1 + 1e-9))
+    np.testing.assert_allclose(same.cost, every.cost)
+    assert depth_first_walk(problem, rest, begin, 20_000_000, below=every.cost * (1 - 1e-9)) == (None, True)
+
+
+def test_a_crowded_stretch_costs_no_less_and_follows_fewer(moves):
+    curve = bend(0.9, 1.1)
+    problem, rest, begin = trail(moves, curve, 2.0), remaining_cost(moves, curve), starts(moves)
+    free, crowded = (curve_walk(problem, rest, begin, beam) for beam in (10_000, 3))
+    assert crowded.expanded < free.expanded
+    assert crowded.cost >= free.cost - 1e-9
+
+
+def test_bodies_that_stand_may_set_out_any_way_for_all_the_few_that_are_followed(moves):
+    # all but the last of these placements face away from the curve
+    curve, one = bend(0.0, 0.9), starts(moves, (0,))
+    turned = [np.pi, 2.6, -2.6, 2.2, -2.2, 1.8, -1.8, 0.0]
+    middle = moves.middle[moves.first[moves.leaving[0]]]
+    offset = np.stack([-apply(middle, Placement(one.yaw[0] + t, np.zeros(2)))[[0, 2]] for t in turned])
+    begin = Starts(
+        np.zeros(len(turned), int), one.yaw[0] + np.array(turned), offset, np.zeros((len(turned), 2))
+    )
+    problem, rest = trail(moves, curve, 2.0), remaining_cost(moves, curve)
+    assert curve_walk(problem, rest, begin, 4).start == len(turned) - 1
 
 
 def test_the_bound_is_under_every_walk_and_meets_it_where_the_curve_costs_nothing(moves):
