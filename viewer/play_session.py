@@ -22,14 +22,19 @@ _LONGEST = 0.1
 # Seconds that can be recorded, and frames per second of a recording.
 _ROOM, RATE = 120.0, 50.0
 # Keys and the parameter whose space they call.
-CALLS = {"j": "height", "l": "length", "r": "reach"}
-HELP = "arrows: speed, direction   J jump   L leap   R reach   1-9 motions   ctrl+drag: path   X drop path   C record"
+CALLS = {"j": "height", "l": "length", "r": "reach", "g": "reach_width"}
+# Keys that are held while what they call shall rest where it reaches.
+HOLDS = {"r", "g"}
+HELP = (
+    "arrows: speed, direction   J jump   L leap   R reach, G grab: as long as held   1-9 motions   "
+    "ctrl+drag: path   X drop path   H blending   C record   Esc close"
+)
 
 
 class PlaySession:
     """The state of the play window.
 
-    `press` and `release` keys (up, down, left, right, j, l, r, 1 .. 9), `draw` a path, `tick` the time; the mesh is
+    `press` and `release` keys (up, down, left, right, j, l, r, g, h, x, c, 1 .. 9), `draw` a path, `tick` the time; the mesh is
     `character.vertices`.  units: of the parameters of every space.
     """
 
@@ -53,6 +58,9 @@ class PlaySession:
             self._held.add(key)
         elif key in CALLS:
             self.call_parameter(CALLS[key])
+            self._held |= HOLDS & {key}
+        elif key == "h":
+            self.character.corrected = not self.character.corrected
         elif key.isdigit() and 0 < int(key) <= len(self.data.names):
             self.call(int(key) - 1)
         elif key == "x":
@@ -87,6 +95,8 @@ class PlaySession:
         """Go along the path that was drawn, in the first space with speed and turning; nothing where there is none."""
         walks = [s for s, names in enumerate(self.data.parameters) if {"speed", "turning"} <= set(names)]
         if len(self.path) > 1 and walks:
+            # the character went on while the path was drawn
+            self.path[0] = (float(self.character.root[0]), float(self.character.root[1]))
             self.call(walks[0])
             self.pilot = PathPilot(
                 self.character, curve_of(through(np.array(self.path))), walks[0], self.number
@@ -123,7 +133,9 @@ class PlaySession:
             if told is not None:
                 return told
             self.pilot, self.path = None, []
-        return Command(self.space, self.values[self.space], self.number)
+        return Command(
+            self.space, self.values[self.space], self.number, math.inf if self._held & HOLDS else 0.0
+        )
 
     def tick(self, seconds: float, spent: float | None = None) -> bool:
         """So much time has passed: play it in steps of 1 / RATE; whether anything moved. spent: s since last drawn."""
@@ -156,7 +168,7 @@ class PlaySession:
             wanted = (
                 ("turning", "reach_x")
                 if key in ("left", "right")
-                else ("speed", "height", "length", "reach_y")
+                else ("speed", "height", "length", "reach_y", "reach_width")
             )
             for k, name in enumerate(names):
                 if name in wanted:
@@ -171,6 +183,8 @@ class PlaySession:
         parts = [self.data.names[character.space]]
         parts.append("latency -" if math.isnan(character.latency) else f"latency {character.latency:.2f} s")
         parts.append("-- frames/s" if math.isnan(rate) else f"{rate:.0f} frames/s")
+        if any(self.data.corrections):
+            parts.append("hybrid blending" if character.corrected else "linear blending")
         if self.is_recording and self.recording is not None:
             parts.append(f"recording {self.recording.count / RATE:.1f} s")
         elif self.recording is not None:
@@ -187,12 +201,10 @@ class PlaySession:
     def parameters_picture(self, size: tuple[int, int]) -> np.ndarray:
         """Under which parameters (004 fig B.3b)."""
         s, table = self.space, self.data.maps[self.space]
+        # along a path the pilot asks
+        asked, before = self.values[s], self.before[s]
+        if self.pilot is not None:
+            asked = before = self.pilot.values
         return parameter_diagram(
-            self.data.parameters[s],
-            self.units[s],
-            table.lower,
-            table.upper,
-            self.values[s],
-            self.before[s],
-            size,
+            self.data.parameters[s], self.units[s], table.lower, table.upper, asked, before, size
         )

@@ -12,10 +12,11 @@ import numpy as np
 from reperform.viewer.pictures.scene import Body
 from reperform.viewer.play_script_input import ScriptedInput
 from reperform.viewer.play_session import HELP, PlaySession
+from reperform.viewer.stage import GRID, set_stage
 from reperform.viewer.window import SIZE, as_image, as_mesh, check_display
 
 _PANEL, _BAR = 380, 56
-_BODY, _GRID, _PATH = "body", "grid", "path"
+_BODY, _PATH = "body", "path"
 # places shown of a drawn path: lines in a scene must not change in number
 _DOTS = 64
 
@@ -59,28 +60,28 @@ class PlayWindow:
         self._end, self._picture = seconds, picture
         self._last = self._start = time.monotonic()
         self._drawn, self._closing = 0.0, False
+        self._down: set[str] = set()
         self._room = 1 << (len(session.data.faces) - 1).bit_length()
         self._keys = {
             gui.KeyName.UP: "up", gui.KeyName.DOWN: "down", gui.KeyName.LEFT: "left", gui.KeyName.RIGHT: "right",
         }  # fmt: skip
-        self._keys |= {getattr(gui.KeyName, letter.upper()): letter for letter in "jlrxc"}
+        self._keys |= {getattr(gui.KeyName, letter.upper()): letter for letter in "jlrghxc"}
         words = ("ONE", "TWO", "THREE", "FOUR", "FIVE", "SIX", "SEVEN", "EIGHT", "NINE")
         self._keys |= {getattr(gui.KeyName, word): str(k + 1) for k, word in enumerate(words)}
         self._build()
 
     def _build(self) -> None:
         gui, rendering = self._gui, self._rendering
-        self._scene = gui.SceneWidget()
-        self._scene.scene = rendering.Open3DScene(self.window.renderer)
+        self._scene = set_stage(self.window, 6.0, 40.0)
         scene = self._scene.scene
-        scene.set_background([0.78, 0.84, 0.92, 1.0])
-        scene.scene.set_sun_light([0.35, -1.0, -0.45], [1.0, 1.0, 1.0], 90000)
-        scene.scene.enable_sun_light(True)
         scene.view.set_antialiasing(False)
         self._material = rendering.MaterialRecord()
         self._material.shader = "defaultLit"
         self._material.base_roughness, self._material.base_reflectance = 0.9, 0.2
-        self._ground()
+        up, eye = np.array([0, 1, 0], np.float32), np.array([2.6, 2.2, -4.6], np.float32)
+        self._scene.look_at(np.array([0, 0.9, 0], np.float32), eye, up)
+        self._dot = rendering.MaterialRecord()
+        self._dot.shader, self._dot.point_size = "defaultUnlit", 9.0
         self._nodes, self._parameters = gui.ImageWidget(), gui.ImageWidget()
         self._status, self._help = gui.Label(""), gui.Label(HELP)
         for widget in (self._scene, self._nodes, self._parameters, self._status, self._help):
@@ -90,27 +91,6 @@ class PlayWindow:
         self.window.set_on_key(self._key)
         self._scene.set_on_mouse(self._mouse)
         self._show()
-
-    def _ground(self) -> None:
-        """A grid of half metres, and the dots of a path, both moved and never replaced."""
-        from open3d import geometry, utility
-
-        reach = np.arange(-12, 13) * 0.5
-        ends = [[[a, 0, -6], [a, 0, 6]] for a in reach] + [[[-6, 0, a], [6, 0, a]] for a in reach]
-        points = np.reshape(ends, (-1, 3)).astype(np.float64)
-        lines = geometry.LineSet()
-        lines.points = utility.Vector3dVector(points)
-        lines.lines = utility.Vector2iVector(np.arange(len(points), dtype=np.int32).reshape(-1, 2))
-        lines.paint_uniform_color([0.45, 0.50, 0.56])
-        material = self._rendering.MaterialRecord()
-        material.shader, material.line_width = "unlitLine", 1.2
-        self._scene.scene.add_geometry(_GRID, lines, material)
-        bounds = geometry.AxisAlignedBoundingBox(np.full(3, -8.0), np.full(3, 8.0))
-        self._scene.setup_camera(40.0, bounds, np.zeros(3, np.float32))
-        up, eye = np.array([0, 1, 0], np.float32), np.array([2.6, 2.2, -4.6], np.float32)
-        self._scene.look_at(np.array([0, 0.9, 0], np.float32), eye, up)
-        self._dot = self._rendering.MaterialRecord()
-        self._dot.shader, self._dot.point_size = "defaultUnlit", 9.0
 
     def _layout(self, _: Any) -> None:
         gui, whole, scale = self._gui, self.window.content_rect, self.window.scaling
@@ -156,13 +136,20 @@ class PlayWindow:
         self._scene.scene.scene.render_to_image(save)
 
     def _key(self, event: Any) -> bool:
+        if event.key == self._gui.KeyName.ESCAPE and not self._closing:
+            self._closing = True
+            self._finish()
+            return True
         name = self._keys.get(event.key)
         if name is None:
             return False
-        if event.type == self._gui.KeyEvent.DOWN:
-            self.session.press(name)
-        else:
+        if event.type != self._gui.KeyEvent.Type.DOWN:
+            self._down.discard(name)
             self.session.release(name)
+        elif name not in self._down:
+            # a key that is kept down comes again and again
+            self._down.add(name)
+            self.session.press(name)
         return True
 
     def _mouse(self, event: Any) -> Any:
@@ -206,7 +193,7 @@ class PlayWindow:
         scene.add_geometry(_BODY, as_mesh(body, home, self._room), self._material)
         ground = np.eye(4)
         ground[:3, 3] = -np.mod(home, 0.5)
-        scene.set_geometry_transform(_GRID, ground)
+        scene.set_geometry_transform(GRID, ground)
         places = np.full((_DOTS, 3), -9.0)
         drawn = self.session.path[-_DOTS:]
         if drawn:

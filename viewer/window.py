@@ -13,12 +13,13 @@ import numpy as np
 from reperform.viewer.browser import Browser
 from reperform.viewer.pictures.scene import CLAY, Body, checker_colours
 from reperform.viewer.session import Session
+from reperform.viewer.stage import GRID, set_stage
 
 SIZE = (1280, 800)
 PANEL, BAR, TREE = 250, 74, 0.58
 # Seconds between two ticks from which drawing counts as slow.
 SLOW = 0.25
-BODY, GRID = "body", "grid"
+BODY = "body"
 
 
 class NoDisplayError(RuntimeError):
@@ -63,12 +64,7 @@ class Window:
         self._rows: dict[int, tuple[str, str]] = {}
         self._build_panel()
         self._build_bar()
-        self._scene = gui.SceneWidget()
-        self._scene.scene = rendering.Open3DScene(window.renderer)
-        self._scene.scene.set_background([0.78, 0.84, 0.92, 1.0])
-        self._scene.scene.scene.set_sun_light([0.35, -1.0, -0.45], [1.0, 1.0, 1.0], 90000)
-        self._scene.scene.scene.enable_sun_light(True)
-        self._build_ground()
+        self._scene = set_stage(window, 3.0, float(np.degrees(session.view.opening)))
         # Buttons and sliders stay quick where drawing the scene is slow.
         self._scene.enable_scene_caching(True)
         self._picture = gui.ImageWidget()
@@ -195,7 +191,7 @@ class Window:
 
     def _key(self, event: Any) -> bool:
         gui = self._gui
-        if event.type != gui.KeyEvent.DOWN:
+        if event.type != gui.KeyEvent.Type.DOWN:
             return False
         if event.key == gui.KeyName.SPACE:
             self._toggle()
@@ -260,23 +256,6 @@ class Window:
         ground = np.eye(4)
         ground[:3, 3] = target * [1, 0, 1]
         self._scene.scene.set_geometry_transform(GRID, ground)
-
-    def _build_ground(self) -> None:
-        """A grid of half metres. It is moved, never replaced: replaced lines stop the drawing for good."""
-        from open3d import geometry, utility
-
-        reach = np.arange(-6, 7) * 0.5
-        ends = [[[a, 0, -3], [a, 0, 3]] for a in reach] + [[[-3, 0, a], [3, 0, a]] for a in reach]
-        points = np.reshape(ends, (-1, 3)).astype(np.float64)
-        lines = geometry.LineSet()
-        lines.points = utility.Vector3dVector(points)
-        lines.lines = utility.Vector2iVector(np.arange(len(points), dtype=np.int32).reshape(-1, 2))
-        lines.paint_uniform_color([0.45, 0.50, 0.56])
-        material = self._rendering.MaterialRecord()
-        material.shader, material.line_width = "unlitLine", 1.2
-        self._scene.scene.add_geometry(GRID, lines, material)
-        bounds = geometry.AxisAlignedBoundingBox(np.full(3, -6.0), np.full(3, 6.0))
-        self._scene.setup_camera(np.degrees(self.session.view.opening), bounds, np.zeros(3, np.float32))
 
     def _material_for(self, body: Body) -> Any:
         """The material of a surface; kept, so that a texture goes to the graphics card once."""

@@ -33,7 +33,8 @@ SOURCES = 8
 class Command(NamedTuple):
     """What is asked: a space and values of its parameters. A new number is a new request.
 
-    hold: seconds that a motion rests where it reaches, unless something else is asked.
+    hold: seconds that a motion rests where it reaches, unless something else is asked; less in a later command of the
+    same number ends it.
     """
 
     space: int
@@ -66,6 +67,7 @@ class Character:
     performed once per request; then the last cyclic motion goes on. Root motion is the blend of the roots' velocities,
     and planted feet are held where they touch the ground.
 
+    Where `corrected`, spaces that have corrections are blended with them; they fade in and out in `blend` s.
     space, values: what it begins with; place: x, z (m) and heading (rad, 0 along +z, left positive) where it begins.
 
     Source: 004 chapter 4. Departure: blended transitions, held feet, and motions entered within their first part
@@ -85,6 +87,7 @@ class Character:
         self.soles = np.zeros((feet, 3))
         self.time, self.asked, self.latency, self.cost = 0.0, 0.0, math.nan, math.nan
         self.mix, self.blending, self.stuck = 1.0, False, 0.0
+        self.corrected, self._correction = True, 1.0
         self._flat = np.zeros(3 * data.vertices, np.float32)
         self._share, self._natural, self._slid = np.zeros(feet), np.zeros((feet, 3)), np.zeros((feet, 2))
         self._touch = np.zeros((len(data.feet.vertex), 3))
@@ -192,6 +195,8 @@ class Character:
         elif self.served != command.number:
             self._goal = command
         else:
+            # a hold that is taken back ends
+            self._hold = min(self._hold, command.hold)
             late = self.pose >= _LEAVE * self.data.spaces[self.space].poses and self._hold <= 0.0
             done = late or self.space != command.space
             self._goal = self._rest if done else command
@@ -341,6 +346,8 @@ class Character:
 
     def _place(self, dt: float) -> None:
         """Blend the mesh, hold the feet, and put it in the world."""
+        fade = dt / self.blend if self.corrected else -dt / self.blend
+        self._correction = min(max(self._correction + fade, 0.0), 1.0)
         share = _ease(self.mix) if self.blending else 1.0
         self._blend(self.now, share, False)
         if self.blending:
@@ -358,9 +365,10 @@ class Character:
         pose_into(space.inputs, layer.weights, layer.pose[0], share, add, self._flat)
         planted_share(space.planted, layer.weights, layer.pose[0], share, add, self._share)
         s = layer.space[0]
-        if self.data.corrections[s]:
+        if self.data.corrections[s] and self._correction > 0.0:
             add_corrections(
-                self.data.corrections[s], self.data.cells[s], layer.control, layer.pose[0], share,
+                self.data.corrections[s], self.data.cells[s], layer.control, layer.pose[0],
+                share * self._correction,
                 self._scratch[s], self._halved[s], self._flat,
             )  # fmt: skip
 

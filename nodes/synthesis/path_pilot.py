@@ -17,6 +17,8 @@ _ACROSS = 1.5
 class PathPilot:
     """Turns where a character is into commands for one space; `command` is None once the path ends.
 
+    values: what was asked last, overwritten by the next command.
+
     Raises ValueError where the space has not the parameters speed and turning.
     """
 
@@ -35,7 +37,7 @@ class PathPilot:
         self.slowest = float(table.lower[self._speed])
         limits = np.array([self.slowest, table.upper[self._speed], max(turn, 0.05), _ACROSS])
         self._follower = Follower(curve, limits)
-        self._values = data.values(space, {})
+        self.values = data.values(space, {})
         self._going = 0.5 * (limits[0] + limits[1])
         self._last = 0.0
 
@@ -50,5 +52,5 @@ class PathPilot:
         if self.left < 0.05:
             return None
         self._going += (speed - self._going) * (1.0 - math.exp(-dt / 0.3))
-        self._values[self._speed], self._values[self._turn] = speed, turn
-        return Command(self.space, self._values, self.number)
+        self.values[self._speed], self.values[self._turn] = speed, turn
+        return Command(self.space, self.values, self.number)

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import os
+import shutil
+import subprocess
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -23,6 +26,22 @@ from reperform.nodes.products.target_grid import TargetGrid
 from reperform.nodes.ragged import Ragged
 
 FPS = np.float32(25.0)
+
+
+@pytest.fixture
+def display() -> Iterator[str]:
+    """A virtual screen of this test's own."""
+    server = shutil.which("Xvfb")
+    if server is None:
+        pytest.skip("Xvfb is not installed: apt-get install xvfb")
+    read, write = os.pipe()
+    command = [server, "-displayfd", str(write), "-screen", "0", "800x600x24", "-nolisten", "tcp", "-noreset"]
+    with subprocess.Popen(command, pass_fds=[write], stderr=subprocess.DEVNULL) as screen:
+        os.close(write)
+        with os.fdopen(read) as pipe:
+            number = pipe.readline().strip()
+        yield f":{number}"
+        screen.terminate()
 
 
 def filled(kind: type, lengths: dict[str, int], **given: Any) -> Any:

@@ -53,6 +53,31 @@ def test_a_drawn_path_is_followed(session):
     assert session.character.root[1] > 4.0
 
 
+def test_a_path_begins_where_the_character_is_when_it_is_let_go(session):
+    session.draw(0.3, 4.0)
+    drawn = list(session.path)
+    played(session, "", 1.0)
+    session.draw(0.0, 6.0)
+    session.follow()
+    assert session.path[0] != drawn[0]
+    np.testing.assert_allclose(session.path[0], session.character.root[:2])
+    before = session.parameters_picture((360, 200))
+    played(session, "", 1.0)
+    assert (session.parameters_picture((360, 200)) != before).any()
+
+
+def test_a_key_that_is_held_holds_what_reaches_and_another_switches_blending(session):
+    played(session, "0 press r", 0.2)
+    assert session.command().hold == np.inf
+    session.release("r")
+    assert session.command().hold == 0.0
+    assert session.character.corrected
+    session.press("h")
+    assert not session.character.corrected
+    # nothing to switch where there are no corrections
+    assert "blending" not in session.status()
+
+
 def test_what_was_recorded_is_a_product_and_a_file(session, tmp_path):
     with pytest.raises(ValueError, match="nothing was recorded"):
         write_recording(session, tmp_path / "none.npz")

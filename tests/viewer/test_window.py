@@ -1,11 +1,7 @@
 import os
-import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
-
-import pytest
 
 # Opens the window, goes from a surface to a matrix and to a surface of another size, plays, and closes.
 SCRIPT = """
@@ -45,22 +41,6 @@ Window._tick = act
 open_window(Session(Results(products, steps), "mesh"), (640, 480))
 print("returned", flush=True)
 """
-
-
-@pytest.fixture
-def display() -> Iterator[str]:
-    """A virtual screen of this test's own."""
-    server = shutil.which("Xvfb")
-    if server is None:
-        pytest.skip("Xvfb is not installed: apt-get install xvfb")
-    read, write = os.pipe()
-    command = [server, "-displayfd", str(write), "-screen", "0", "800x600x24", "-nolisten", "tcp", "-noreset"]
-    with subprocess.Popen(command, pass_fds=[write], stderr=subprocess.DEVNULL) as screen:
-        os.close(write)
-        with os.fdopen(read) as pipe:
-            number = pipe.readline().strip()
-        yield f":{number}"
-        screen.terminate()
 
 
 def test_the_window_opens_shows_every_kind_plays_and_closes(display: str) -> None:

@@ -26,17 +26,21 @@ from reperform.viewer.invocation import load, run, target_of
     type=click.Path(dir_okay=False),
     help="Play --input for --seconds without a display and write a picture of the window.",
 )
+@click.option(
+    "--hybrid", is_flag=True, help="Correct blends by the steps of blend.correct_space; H switches."
+)
 @run_options
 def command(
     pipeline: str, step: str, acts: str | None, seconds: float, record: str | None, screenshot: str | None,
+    hybrid: bool,
     **options: Any,
 ) -> None:  # fmt: skip
     """Direct the character of STEP (a parametric motion graph) with the keyboard.
 
-    Arrows: speed and direction; J jump, L leap, R reach, 1-9 the motions; with control held, the mouse draws a path that
-    is then followed; X drops it; C records.
+    Arrows: speed and direction; J jump, L leap, R reach and G grab, as long as they are held; 1-9 the motions; with control
+    held, the mouse draws a path that is then followed; X drops it; H switches hybrid blending; C records; Esc closes.
     """
-    from reperform.viewer.play_opening import open_session, write_recording
+    from reperform.viewer.play_opening import correcting, open_session, write_recording
     from reperform.viewer.play_script_input import ScriptedInput, read_acts
 
     loaded = load(pipeline, options["sets"])
@@ -45,8 +49,9 @@ def command(
         from reperform.viewer.window import check_display
 
         check_display()
-    done = run(pipeline, [name], **options)
-    session = open_session(done, name)
+    corrections = correcting(loaded, name) if hybrid else []
+    done = run(pipeline, [name, *corrections], **options)
+    session = open_session(done, name, corrections)
     lines = Path(acts).read_text("utf-8").splitlines() if acts else []
     scripted = ScriptedInput(read_acts(lines, acts or "input"))
     if record:

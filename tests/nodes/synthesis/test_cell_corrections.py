@@ -57,6 +57,27 @@ def test_a_script_plays_hybrid_and_transitions_stay_smooth(playable, corrections
     assert np.percentile(jerk, 99, axis=1).max() < 1.15 * np.percentile(before, 99, axis=1).max()
 
 
+def test_corrections_fade_out_and_in_while_it_plays(playable, corrections):
+    data = character_data(*playable, corrections, "hybrid")
+    jump = data.space("jump")
+    values = np.array([float(np.mean(playable[1]["jump"].value))])
+    fading, whole = Character(data, jump, values=values), Character(data, jump, values=values)
+    bare = Character(character_data(*playable), jump, values=values)
+    apart = []
+    for frame in range(30):
+        fading.corrected = frame < 5 or frame >= 20
+        for character in (fading, whole, bare):
+            character.perform(0.04)
+        apart.append([np.abs(fading.vertices - other.vertices).max() for other in (whole, bare)])
+    from_whole, from_bare = np.array(apart).T
+    assert from_whole[:5].max() == 0.0
+    # held feet have gone another way in between
+    assert max(from_whole[-1], from_bare[14:20].max()) < 0.001
+    assert from_whole[14:20].max() > 0.002
+    # not at once
+    assert 0.0 < from_whole[6] < 0.6 * from_whole[14:20].max() + 0.002
+
+
 def test_hybrid_without_corrections_is_refused(playable):
     with pytest.raises(ValueError, match="blending must be linear"):
         character_data(*playable, None, "hybrid")

@@ -6,6 +6,7 @@ import pytest
 from reperform.nodes.motion_graph.parametric import parametric
 from reperform.nodes.motion_graph.space import space
 from reperform.nodes.products.mesh import MeshSequence
+from reperform.nodes.synthesis.character import Character, Command
 from reperform.nodes.synthesis.character_data import character_data
 from reperform.nodes.synthesis.play_script import play_script
 
@@ -85,6 +86,21 @@ def test_another_request_ends_a_hold(graphs):
     names = played.spaces[played.space]
     assert names[5 * 25 - 1] == "box_clamp"
     assert names[-1] == "walk"
+
+
+def test_a_hold_that_is_taken_back_ends(graphs):
+    graph, chosen = graphs["clamp"]
+    data = character_data(graph, chosen)
+    walk, box = data.space("walk"), data.space("box_clamp")
+    character, values = Character(data, walk), data.values(box, {})
+    stays = []
+    for frame in range(300):
+        hold = np.inf if frame < 200 else 0.0
+        character.step(0.02, Command(box, values, 1, hold))
+        stays.append(character.space == box and character.pose == pytest.approx(data.reach[box]))
+    assert sum(stays[150:200]) == 50
+    assert not any(stays[205:])
+    assert character.space == walk
 
 
 def test_a_box_out_of_reach_is_refused_or_clamped_by_choice(graphs):
