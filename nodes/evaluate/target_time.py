@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from time import perf_counter
+from time import thread_time
 from typing import Annotated
 
 import numpy as np
@@ -19,7 +19,6 @@ from reperform.nodes.products.motion import MotionGraph
 from reperform.nodes.synthesis.key_frame_targets import asked_targets, moves_between
 
 _WHO = "evaluate.target_time"
-_TOLERANCES = 0.05, 0.08
 _WEIGHTS = 10 / 3, 2.5
 # Beyond the greatest targets.
 _FURTHER, _LATER = 2.0, 4.0
@@ -33,73 +32,91 @@ def target_time(
     keys: Annotated[tuple[str, ...], Param(about="key-frame sequences, each TAKE:FRAME > TAKE:FRAME > ...")],
     distances: Annotated[tuple[float, ...], Param("m", about="targets")] = (4.0, 8.0, 12.0, 16.0, 20.0),
     durations: Annotated[tuple[float, ...], Param("s", about="targets")] = (8.0, 16.0, 24.0, 32.0, 40.0),
+    distance_tolerance: Annotated[float, Param("m", 1e-6, 1000.0, "greatest error of the distance")] = 0.05,
+    duration_tolerance: Annotated[float, Param("s", 1e-6, 600.0, "greatest error of the duration")] = 0.08,
     programmes: Annotated[int, Param("1", 0, 1000, "targets that the integer programme solves too")] = 2,
     cells: Annotated[float, Param("1e6", 1.0, 4000.0, "size of the table")] = 150.0,
     patience: Annotated[float, Param("s", 0.1, 1e5, "after which an integer programme is cut off")] = 20.0,
     walks: Annotated[int, Param("1", 1, 10**6, "loop-free walks at most")] = 5000,
     loops: Annotated[int, Param("1", 1, 10**6, "loops at most")] = 5000,
 ) -> Measures:
-    """Seconds per target, one row per key-frame sequence; nan where nothing was measured.
+    """Seconds of processor per target, one row per key-frame sequence; nan where nothing was measured.
 
     `prepare`: laying out and filling the table; `target`, `target max`: mean and greatest time of one answer
-    (infeasible ones with their nearest), the least of three runs each; `programme`: mean of one integer
-    programme in the same run, cut off after `patience` and then counted with that; `enumerate`: its walks and
-    loops, beforehand; `speedup`: programme over target; `cost difference`: the greatest of search - programme.
+    (infeasible ones with their nearest), the least of three runs each; `enumerate`: the walks and loops of the
+    integer programmes. Of the targets that these solve too, spread evenly over all: `proved`: the share on which the
+    programme came to its optimum, or to the proof that there is none, within `patience`; and on these alone
+    `programme`: mean seconds of a programme; `speedup`: over those of the search; `cost difference`: the greatest
+    of search - programme, inf where only one of both finds a motion.
 
     Raises ValueError where a key frame does not exist, key frames cannot be joined, or pieces are too many.
     Source: 000 table III (seconds per target) and section 5.1.2 (the integer programme).
     """
-    rate = float(graph.fps)
+    rate, tolerances = float(graph.fps), (distance_tolerance, duration_tolerance)
     grid = [
-        asked_targets(metres, seconds, _WEIGHTS, _TOLERANCES, rate, _WHO)
+        asked_targets(metres, seconds, _WEIGHTS, tolerances, rate, _WHO)
         for metres in distances
         for seconds in durations
     ]
     horizon, reach = int(np.ceil((max(durations) + _LATER) * rate)), max(distances) + _FURTHER
     rows = []
     for sequence in keys:
-        begun = perf_counter()
+        begun = thread_time()
         moves, _ = moves_between(graph, meshes, [key.strip() for key in sequence.split(">")], _WHO)
         search = PreparedSearch.fill(moves, horizon, reach, _WEIGHTS[0], int(cells * 1e6))
-        prepared = perf_counter() - begun
+        prepared = thread_time() - begun
         seconds = np.min([[_timed(search, targets) for targets in grid] for _ in range(3)], axis=0)
-        programme = _programme(moves, search, grid, programmes, horizon, (walks, loops), patience)
-        rows.append((prepared, seconds.mean(), seconds.max(), *programme, programme[1] / seconds.mean()))
-    names = ("prepare", "target", "target max", "enumerate", "programme", "cost difference", "speedup")
-    return Measures(np.array(rows, np.float64), np.array(names), np.array(["s"] * 5 + ["1", "1"]))
+        compared = _programmes(moves, search, grid, seconds, programmes, horizon, (walks, loops), patience)
+        rows.append((prepared, seconds.mean(), seconds.max(), *compared))
+    names = (
+        "prepare",
+        "target",
+        "target max",
+        "enumerate",
+        "programme",
+        "proved",
+        "cost difference",
+        "speedup",
+    )
+    return Measures(np.array(rows, np.float64), np.array(names), np.array(["s"] * 5 + ["1"] * 3))
 
 
 def _timed(search: PreparedSearch, targets: Targets) -> float:
-    begun = perf_counter()
+    begun = thread_time()
     if search.ask(targets).walk is None:
         search.nearest(targets)
-    return perf_counter() - begun
+    return thread_time() - begun
 
 
-def _programme(
+def _programmes(
     moves: Moves,
     search: PreparedSearch,
     grid: list[Targets],
+    searched: np.ndarray,
     count: int,
     horizon: int,
     limits: tuple[int, int],
     patience: float,
-) -> tuple[float, float, float]:
-    """Seconds to enumerate, mean seconds of a programme, greatest difference of cost to the search."""
+) -> tuple[float, float, float, float, float]:
+    """Seconds to enumerate, and `programme`, `proved`, `cost difference`, `speedup`; searched: seconds per target."""
     if count == 0:
-        return np.nan, np.nan, np.nan
-    begun = perf_counter()
+        return np.nan, np.nan, np.nan, np.nan, np.nan
+    begun = thread_time()
     pieces = enumerate_pieces(moves, horizon, *limits)
-    enumerated = perf_counter() - begun
-    seconds: list[float] = []
-    differences: list[float] = []
-    for k in np.unique(np.linspace(0, len(grid) - 1, count + 2)[1:-1].astype(int)).tolist():
-        begun = perf_counter()
-        other = None
+    enumerated = thread_time() - begun
+    count = min(count, len(grid))
+    chosen = ((np.arange(count) + 0.5) * len(grid) / count).astype(int).tolist()
+    proved: list[tuple[float, float, float]] = []
+    for k in chosen:
+        begun = thread_time()
         with suppress(TimeoutError):
             other = solve_programme(moves, pieces, grid[k], patience)
-        seconds.append(perf_counter() - begun)
-        walk = search.ask(grid[k]).walk
-        if other is not None and walk is not None:
-            differences.append(walk.cost - other.cost)
-    return enumerated, float(np.mean(seconds)), max(differences, default=np.nan)
+            seconds, walk = thread_time() - begun, search.ask(grid[k]).walk
+            agree = 0.0 if walk is None and other is None else np.inf
+            difference = agree if walk is None or other is None else walk.cost - other.cost
+            proved.append((seconds, float(searched[k]), difference))
+    if not proved:
+        return enumerated, np.nan, 0.0, np.nan, np.nan
+    programme, own, differences = np.array(proved).T
+    speedup = float(programme.mean() / own.mean())
+    return enumerated, float(programme.mean()), len(proved) / len(chosen), float(differences.max()), speedup

@@ -52,7 +52,7 @@ class PreparedSearch:
         cell = max(_FINEST, reach * states * (horizon + 1) / cells)
         return cls(moves, False, fill_table(moves, horizon, reach, cell, weight))
 
-    def ask(self, targets: Targets, effort: int = 60_000) -> Answer:
+    def ask(self, targets: Targets, effort: int = 30_000) -> Answer:
         """The cheapest walk within the tolerances and the table, with a bound that no such walk beats.
 
             cost = sum of transition costs + distance_weight |d - d_V| + steps_weight |t - t_V|
@@ -61,7 +61,7 @@ class PreparedSearch:
         """
         return self._searched(targets, targets, _STEP, effort)
 
-    def nearest(self, targets: Targets, effort: int = 60_000) -> Walk | None:
+    def nearest(self, targets: Targets, effort: int = 30_000) -> Walk | None:
         """The walk with least |d - d_V| / tolerance + |t - t_V| / tolerance; its bound is nan."""
         missed = Targets(
             targets.distance, targets.steps, _MISSED / targets.distance_tolerance,

@@ -12,8 +12,8 @@ from reperform.nodes.kernels.walk_table import WalkTable, least_cost
 _ALIKE = 1e-9
 # Limits that rise by more than so many first steps are given up for none.
 _RISES = 1024.0
-# Labels kept at one step where the search for the cheapest takes too many.
-_NARROW = 24
+# Labels kept at one step where the search for the cheapest takes too many: few, then more where few find nothing.
+_WIDTHS = (6, 24)
 
 
 @njit(cache=True, nogil=True)
@@ -23,8 +23,8 @@ def cheapest_walk(
     """The moves of the cheapest walk within the tolerances (none: empty), its cost, a lower bound, whether it is proved.
 
     Everything under a limit is searched; the limit rises in doubling steps, the first `step` above the table's bound,
-    until a walk is found, which then is the cheapest. After `effort` labels the bound stays where it is, and the best
-    of few labels per step is taken. Proved: the walk is one, or there is none.
+    until a walk is found, which then is the cheapest. After `effort` labels the bound stays where it is, and the first
+    walk that few labels per step find is taken. Proved: the walk is one, or there is none.
     """
     distance, steps, weight, late_weight, tolerance, late_tolerance = targets
     if np.isnan(distance):
@@ -64,14 +64,14 @@ def cheapest_walk(
         bound, rise = limit, 2.0 * rise
     if bound == np.inf:
         return found, best, bound, True
-    for k in rows:
-        if under[k] + delay[k] >= best or len(found) > 0:
-            break
-        walk, cost, _ = search_walk(
-            moves, table, first + k, distance, tolerance, weight, best - delay[k], 4 * _NARROW * (last + 1), _NARROW
-        )  # fmt: skip
-        if len(walk) > 0:
-            found, best = walk, cost + delay[k]
+    for width in _WIDTHS:
+        for k in rows:
+            if len(found) > 0 or under[k] == np.inf:
+                break
+            found, cost, _ = search_walk(
+                moves, table, first + k, distance, tolerance, weight, np.inf, 4 * width * (last + 1), width
+            )
+            best = cost + delay[k]
     return found, best, min(bound, best), len(found) > 0
 
 
