@@ -32,6 +32,14 @@ class Targets(NamedTuple):
         far = np.nan_to_num(np.abs(distance - self.distance)) * self.distance_weight
         return np.asarray(far + np.nan_to_num(np.abs(steps - self.steps)) * self.steps_weight)
 
+    def off(self, distance: float, steps: float) -> tuple[float, float]:
+        """How far off they are, in units of the tolerances; 0 where nothing is asked."""
+        far, late = abs(distance - self.distance), abs(steps - self.steps)
+        return (
+            float(np.nan_to_num(far / self.distance_tolerance)),
+            float(np.nan_to_num(late / self.steps_tolerance)),
+        )
+
 
 class Walk(NamedTuple):
     """A walk found: its transitions, what it covers and costs, a proved lower bound of any walk's cost."""
@@ -65,6 +73,20 @@ class Moves(NamedTuple):
     def reachable(self) -> bool:
         """Whether any walk at all meets all key frames in order."""
         return bool((self.following == -1).any())
+
+    @property
+    def origin(self) -> np.ndarray:
+        """The state that each move leaves."""
+        return np.repeat(np.arange(len(self.first) - 1), np.diff(self.first))
+
+
+def least_steps(moves: Moves) -> np.ndarray:
+    """Least steps from each state to the end; inf where there is no way."""
+    origin, out = moves.origin, np.full(len(moves.first) - 1, np.inf)
+    for _ in range(len(out)):
+        after = np.where(moves.following < 0, 0.0, out[moves.following])
+        np.minimum.at(out, origin, moves.steps + after)
+    return out
 
 
 def lay_out(

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import Bounds, LinearConstraint, milp
 
-from reperform.nodes.kernels.walk_moves import Moves, Targets, Walk
+from reperform.nodes.kernels.walk_moves import Moves, Targets, Walk, least_steps
 
 # Solutions that fall apart, cut off one after the other, at most.
 _CUTS = 1000
@@ -30,7 +30,7 @@ def enumerate_pieces(moves: Moves, horizon: int, walks: int, loops: int) -> Piec
 
     Raises ValueError where there are more than `walks` or `loops` of them.
     """
-    found = _walks(moves, horizon, walks, _quickest(moves))
+    found = _walks(moves, horizon, walks, least_steps(moves))
     reached = {state for walk in found for state in _states(moves, walk)}
     # a loop may hang on another loop, so all that the walks lead to counts
     reached |= _beyond(moves, reached)
@@ -146,7 +146,7 @@ def _strung(
     """One walk over all moves of the pieces: each loop is let in where its first known state is met."""
     out = list(walk)
     left = {k: int(times[k]) for k in np.flatnonzero(times).tolist()}
-    origin = _origin(moves)
+    origin = moves.origin
     while left:
         for k in list(left):
             at = {int(origin[e]): i for i, e in enumerate(out)}
@@ -165,22 +165,8 @@ def _sums(moves: Moves, edges: Sequence[int]) -> np.ndarray:
     )
 
 
-def _origin(moves: Moves) -> np.ndarray:
-    """The state that each move leaves."""
-    return np.repeat(np.arange(len(moves.first) - 1), np.diff(moves.first))
-
-
 def _states(moves: Moves, edges: Sequence[int]) -> set[int]:
     return {int(np.searchsorted(moves.first, e, side="right")) - 1 for e in edges}
-
-
-def _quickest(moves: Moves) -> np.ndarray:
-    """Least steps from each state to the end; inf where there is no way."""
-    origin, out = _origin(moves), np.full(len(moves.first) - 1, np.inf)
-    for _ in range(len(out)):
-        after = np.where(moves.following < 0, 0.0, out[moves.following])
-        np.minimum.at(out, origin, moves.steps + after)
-    return out
 
 
 def _walks(moves: Moves, horizon: int, limit: int, quickest: np.ndarray) -> list[tuple[int, ...]]:
@@ -217,7 +203,7 @@ def _loops(moves: Moves, horizon: int, limit: int, states: set[int]) -> list[tup
     """Each loop once, from the least of its states."""
     found: list[tuple[int, ...]] = []
     back: dict[int, set[int]] = defaultdict(set)
-    for e, state in enumerate(_origin(moves).tolist()):
+    for e, state in enumerate(moves.origin.tolist()):
         back[int(moves.following[e])].add(state)
     for root in sorted(states):
         home = _leading_to(root, back)

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from reperform.nodes.kernels.path_frames import path_frames
-from reperform.nodes.kernels.walk_moves import Moves, Spot, Targets, Walk, lay_out
+from reperform.nodes.kernels.prepared_search import PreparedSearch
+from reperform.nodes.kernels.walk_moves import Moves, Spot, Targets, Walk, lay_out, least_steps
 from reperform.nodes.product import Dataset
 from reperform.nodes.products.mesh import MeshSequence
 from reperform.nodes.products.motion import MotionGraph, MotionPath
@@ -22,13 +23,33 @@ def moves_between(
     Raises ValueError where a key frame does not exist or no walk joins them.
     """
     spots = [key_spot(text, graph, who) for text in keys]
-    moves = lay_out(passages_of(graph), np.asarray(graph.cost), ground_tracks(graph, meshes, who), spots)
+    passages, costs, tracks = passages_of(graph), np.asarray(graph.cost), ground_tracks(graph, meshes, who)
+    moves = lay_out(passages, costs, tracks, spots)
     if not moves.reachable:
+        shown = next(
+            n
+            for n in range(len(spots) - 1, 0, -1)
+            if n == 1 or lay_out(passages, costs, tracks, spots[:n]).reachable
+        )
         raise ValueError(
-            f"{who}: no walk through the graph shows {', '.join(keys)} in this order: "
-            f"allow more transitions, a higher threshold, or other key frames"
+            f"{who}: no walk through the graph shows {', '.join(keys)} in this order: no way leads from "
+            f"{' over '.join(keys[:shown])} to {keys[shown]}: allow more transitions, a higher threshold, or other key frames"
         )
     return moves, spots
+
+
+def nearest_walk(moves: Moves, targets: Targets, rate: float) -> Walk:
+    """The walk nearest to targets that cannot be met, looked for ever wider until nothing beyond can be nearer."""
+    steps = int(np.nanmax([targets.steps, 0.0]) + targets.steps_tolerance + least_steps(moves)[0] + 2 * rate)
+    reach = np.inf if np.isnan(targets.distance) else targets.distance + targets.distance_tolerance + 2.0
+    while True:
+        walk = PreparedSearch.fill(moves, steps, reach, targets.distance_weight).nearest(targets)
+        if walk is not None:
+            beyond = (reach - targets.distance) / targets.distance_tolerance
+            after = (steps - targets.steps) / targets.steps_tolerance
+            if sum(targets.off(walk.distance, walk.steps)) <= np.nanmin([beyond, after, np.inf]):
+                return walk
+        steps, reach = 2 * steps, 2.0 * reach
 
 
 def key_spot(text: str, graph: MotionGraph, who: str) -> Spot:
@@ -91,17 +112,12 @@ def path_of(
     )  # fmt: skip
 
 
-def infeasible(
-    keys: Sequence[str], targets: Targets, walk: Walk | None, rate: float, proved: bool, who: str
-) -> str:
+def infeasible(keys: Sequence[str], targets: Targets, walk: Walk, rate: float, proved: bool, who: str) -> str:
     """What cannot be met, and the nearest that can."""
     wanted = ((targets.distance, "m"), ((targets.steps + 1.0) / rate, "s"))
     asked = " in ".join(f"{value:g} {unit}" for value, unit in wanted if not np.isnan(value))
     none = "no walk" if proved else "no walk was found that"
-    text = f"{who}: {none} through {', '.join(keys)} covers {asked or 'anything'} within the tolerances"
-    if walk is None:
-        return f"{text}, nor any near it: ask for a longer duration"
     return (
-        f"{text}; the nearest that can be met is {walk.distance:.3f} m in {(walk.steps + 1) / rate:.2f} s: "
-        f"ask for that, widen the tolerances, or set nearest: true"
+        f"{who}: {none} through {', '.join(keys)} covers {asked or 'anything'} within the tolerances; the nearest that "
+        f"can be met is {walk.distance:.3f} m in {(walk.steps + 1) / rate:.2f} s: ask for that, widen the tolerances"
     )

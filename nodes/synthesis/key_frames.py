@@ -10,16 +10,20 @@ from reperform.nodes.declaration import Param, node
 from reperform.nodes.kernels.ground_plane import align
 from reperform.nodes.kernels.placed_search import Goal, best_placed
 from reperform.nodes.kernels.prepared_search import PreparedSearch
-from reperform.nodes.kernels.walk_moves import Moves, Spot, Targets, Walk
+from reperform.nodes.kernels.walk_moves import Spot
 from reperform.nodes.product import Dataset
 from reperform.nodes.products.mesh import MeshSequence
 from reperform.nodes.products.motion import MotionGraph, MotionPath
 from reperform.nodes.synthesis.graph_walk import passages_of
-from reperform.nodes.synthesis.key_frame_targets import asked_targets, infeasible, moves_between, path_of
+from reperform.nodes.synthesis.key_frame_targets import (
+    asked_targets,
+    infeasible,
+    moves_between,
+    nearest_walk,
+    path_of,
+)
 
 _WHO = "synthesis.key_frames"
-# How far beyond the targets the nearest feasible one is looked for: factors of the horizon.
-_WIDER = (1, 2, 4)
 # Walks kept of each place and number of steps where position or heading count.
 _WIDTH = 100
 
@@ -70,9 +74,9 @@ def key_frames(
     (coordinates of the first take; turn: how the last frame is turned against the first, by least squares). Then the
     cheapest walks of each place and number of steps are kept, nearly alike ones once; `bound` disregards place.
 
-    Raises ValueError where a key frame does not exist, the key frames cannot be joined, or no walk is within
-    the tolerances; it then names the nearest distance and duration that can be met. With `nearest` that walk
-    is returned instead, its errors to be read from the product.
+    Raises ValueError where a key frame does not exist, the key frames cannot be joined, the position is further away
+    than the distance, or no walk is within the tolerances; it then names the nearest distance and duration that can
+    be met. With `nearest` that walk is returned instead, its errors to be read from the product.
 
     Source: Huang, Tejera, Collomosse and Hilton 2015, ACM TOG (000 section 5.1, eqs 7-13); position: 003 eq 6.
     Departure: 000 enumerates walks and attaches loops by integer programming (eqs 14-25), where the target is
@@ -88,6 +92,8 @@ def key_frames(
         rate,
         _WHO,
     )
+    if not nearest:
+        _agree(position, distance, distance_tolerance)
     moves, spots = moves_between(graph, meshes, keys, _WHO)
     horizon = int(np.ceil((longest if duration is None else duration + duration_tolerance) * rate))
     reach = np.inf if distance is None else distance + distance_tolerance
@@ -98,10 +104,21 @@ def key_frames(
         placed = best_placed(moves, passages_of(graph), asked, goal, horizon, _WIDTH)
         walk = placed if placed is not None else walk
     if walk is None:
-        walk = _nearest(moves, asked, horizon, reach, rate)
-        if walk is None or not nearest:
-            raise ValueError(infeasible(keys, asked, walk, rate, answer.proved, _WHO))
+        walk = nearest_walk(moves, asked, rate)
+        if (walk.steps > horizon or max(asked.off(walk.distance, walk.steps)) > 1.0) and not nearest:
+            cure = ", raise longest, or set nearest: true" if duration is None else ", or set nearest: true"
+            raise ValueError(infeasible(keys, asked, walk, rate, answer.proved, _WHO) + cure)
     return path_of(graph, meshes, spots, walk, asked, _WHO)
+
+
+def _agree(position: tuple[float, ...], distance: float | None, tolerance: float) -> None:
+    """No way is shorter than the straight one."""
+    away = float(np.hypot(*position)) if len(position) == 2 else 0.0
+    if distance is not None and away > distance + tolerance:
+        raise ValueError(
+            f"{_WHO}: no motion of {distance:g} m ends {away:.3f} m from where it starts: ask for a distance of "
+            f"{away - tolerance:.3f} m or more, for a position {distance + tolerance:.3f} m away or less, or set nearest: true"
+        )
 
 
 def _goal(
@@ -123,24 +140,3 @@ def _goal(
     place = start + np.array(position) if position else np.full(2, np.nan)
     turned = align(first, last)[0].yaw
     return Goal(place, np.nan if heading is None else heading + turned, *weights, end)
-
-
-def _nearest(moves: Moves, asked: Targets, horizon: int, reach: float, rate: float) -> Walk | None:
-    """The nearest walk, looked for ever wider until nothing outside the table can be nearer."""
-    walk = None
-    for factor in _WIDER:
-        steps = factor * horizon + int(4 * rate)
-        far = factor * reach + 2.0
-        walk = PreparedSearch.fill(moves, steps, far, asked.distance_weight).nearest(asked)
-        if walk is not None:
-            error = max(
-                np.nan_to_num(abs(walk.distance - asked.distance)) / asked.distance_tolerance,
-                np.nan_to_num(abs(walk.steps - asked.steps)) / asked.steps_tolerance,
-            )
-            outside = min(
-                np.nan_to_num(far - asked.distance, nan=np.inf) / asked.distance_tolerance,
-                np.nan_to_num(steps - asked.steps, nan=np.inf) / asked.steps_tolerance,
-            )
-            if error <= outside:
-                return walk
-    return walk

@@ -11,7 +11,13 @@ from reperform.nodes.kernels.walk_programme import enumerate_pieces, solve_progr
 from reperform.nodes.product import Dataset
 from reperform.nodes.products.mesh import MeshSequence
 from reperform.nodes.products.motion import MotionGraph, MotionPath
-from reperform.nodes.synthesis.key_frame_targets import asked_targets, infeasible, moves_between, path_of
+from reperform.nodes.synthesis.key_frame_targets import (
+    asked_targets,
+    infeasible,
+    moves_between,
+    nearest_walk,
+    path_of,
+)
 
 _WHO = "synthesis.key_frames_ilp"
 
@@ -47,8 +53,8 @@ def key_frames_ilp(
     program (HiGHS); the cheapest wins. All pieces are enumerated, so the cost is the least there is, and the bound.
     Their number explodes with the transitions of the graph: meant for small graphs and for comparison.
 
-    Raises ValueError where a key frame does not exist, key frames cannot be joined, no walk is within the tolerances,
-    or there are more pieces than allowed.
+    Raises ValueError where a key frame does not exist, key frames cannot be joined, no walk is within the tolerances
+    (naming the nearest distance and duration that can be met), or there are more pieces than allowed.
 
     Source: Huang, Tejera, Collomosse and Hilton 2015, ACM TOG (000 section 5.1, eqs 14-25).
     Departure: the target is subtracted once, not once per loop (eq 24), with slack variables for the absolute
@@ -62,5 +68,5 @@ def key_frames_ilp(
     horizon = int(np.ceil((longest if duration is None else duration + duration_tolerance) * rate))
     walk = solve_programme(moves, enumerate_pieces(moves, horizon, walks, loops), asked)
     if walk is None:
-        raise ValueError(infeasible(keys, asked, None, rate, True, _WHO))
+        raise ValueError(infeasible(keys, asked, nearest_walk(moves, asked, rate), rate, True, _WHO))
     return path_of(graph, meshes, spots, walk, asked, _WHO)

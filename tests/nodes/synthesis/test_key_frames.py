@@ -1,11 +1,14 @@
+import re
 from collections.abc import Mapping
 
 import numpy as np
 import pytest
 
 from reperform.nodes.kernels.ground_plane import align
+from reperform.nodes.motion_graph.surface import surface
 from reperform.nodes.products.mesh import MeshSequence
 from reperform.nodes.products.motion import MotionGraph
+from reperform.nodes.similarity.vertex_velocity import vertex_velocity
 from reperform.nodes.synthesis.animate import animate
 from reperform.nodes.synthesis.key_frames import key_frames
 
@@ -84,28 +87,118 @@ def test_key_frames_that_do_not_exist_are_refused(
         key_frames(graph, meshes, start=keys[0], end=keys[1])
 
 
+def kept(graph: MotionGraph, rows: np.ndarray) -> MotionGraph:
+    """Only some of its transitions."""
+    edges = ("source", "target", "source_frame", "target_frame", "length", "cost", "yaw", "offset", "core")
+    return graph._replace(**{name: np.asarray(getattr(graph, name))[rows] for name in edges})
+
+
+def named(error: pytest.ExceptionInfo[ValueError]) -> tuple[float, float]:
+    """Distance and duration that the message offers."""
+    found = re.search(r"nearest that can be met is ([\d.]+) m in ([\d.]+) s: ask for that", str(error.value))
+    assert found is not None
+    return float(found[1]), float(found[2])
+
+
 def test_key_frames_that_cannot_be_joined_are_named(
     graph: MotionGraph, meshes: Mapping[str, MeshSequence]
 ) -> None:
-    kept = np.asarray(graph.source) == np.asarray(graph.target)
-    alone = graph._replace(
-        **{
-            name: np.asarray(getattr(graph, name))[kept]
-            for name in (
-                "source",
-                "target",
-                "source_frame",
-                "target_frame",
-                "length",
-                "cost",
-                "yaw",
-                "offset",
-                "core",
-            )
-        }
-    )
-    with pytest.raises(ValueError, match="no walk through the graph shows slow:3, fast:9"):
+    alone = kept(graph, np.asarray(graph.source) == np.asarray(graph.target))
+    with pytest.raises(ValueError, match="no way leads from slow:3 to fast:9"):
         key_frames(alone, meshes, start="slow:3", end="fast:9")
+
+
+def test_key_frames_in_an_order_without_a_way_back_are_named(
+    graph: MotionGraph, meshes: Mapping[str, MeshSequence]
+) -> None:
+    takes = list(graph.takes)
+    onward = (np.asarray(graph.source) == takes.index("slow")) & (
+        np.asarray(graph.target) == takes.index("fast")
+    )
+    ahead = kept(graph, onward)
+    assert len(ahead.source) > 0
+    path = key_frames(ahead, meshes, start="slow:3", via=("slow:5",), end="fast:57")
+    assert path.cost > 0
+    with pytest.raises(
+        ValueError, match="shows slow:5, slow:3 in this order: no way leads from slow:5 to slow:3"
+    ):
+        key_frames(ahead, meshes, start="slow:5", end="slow:3")
+    with pytest.raises(ValueError, match="no way leads from slow:3 over fast:57 to slow:5"):
+        key_frames(ahead, meshes, start="slow:3", via=("fast:57", "slow:5"), end="fast:58")
+
+
+def test_less_time_than_the_shortest_way_takes_is_named(
+    graph: MotionGraph, meshes: Mapping[str, MeshSequence]
+) -> None:
+    ends = {"start": "slow:3", "via": ("fast:30", "turn:20"), "end": "slow:60"}
+    with pytest.raises(ValueError, match=r"covers 0\.4 s within the tolerances") as error:
+        key_frames(graph, meshes, **ends, duration=0.4)
+    shortest = named(error)[1]
+    path = key_frames(graph, meshes, **ends, duration=shortest, duration_tolerance=0.01)
+    assert path.duration[0] == pytest.approx(shortest)
+    # a frame less is not to be had
+    with pytest.raises(ValueError, match="nearest that can be met") as error:
+        key_frames(graph, meshes, **ends, duration=shortest - 0.04, duration_tolerance=0.01)
+    assert named(error)[1] == shortest
+    # and the longest motion considered counts where no time is asked
+    with pytest.raises(ValueError, match="raise longest") as error:
+        key_frames(graph, meshes, **ends, longest=shortest - 0.2)
+    assert named(error)[1] >= shortest
+
+
+def test_what_is_named_can_be_met(graph: MotionGraph, meshes: Mapping[str, MeshSequence]) -> None:
+    ends = {"start": "slow:3", "end": "turn:40"}
+    for distance, duration in ((0.3, 8.0), (25.0, 6.0), (0.2, None)):
+        with pytest.raises(ValueError, match="nearest that can be met") as error:
+            key_frames(graph, meshes, **ends, distance=distance, duration=duration)
+        far, late = named(error)
+        path = key_frames(graph, meshes, **ends, distance=far, duration=late)
+        assert path.distance[0] == pytest.approx(far, abs=2e-3)
+        assert path.duration[0] == pytest.approx(late, abs=1e-3)
+
+
+def test_a_position_further_away_than_the_distance_is_refused(
+    graph: MotionGraph, meshes: Mapping[str, MeshSequence]
+) -> None:
+    ends = {"start": "slow:3", "end": "turn:40", "distance": 4.0, "duration": 5.0}
+    away = {"position": (3.0, -4.0)}
+    with pytest.raises(
+        ValueError, match=r"no motion of 4 m ends 5\.000 m .* 4\.950 m or more, .* 4\.050 m away or less"
+    ):
+        key_frames(graph, meshes, **ends, **away)
+    assert key_frames(graph, meshes, **ends, **away, nearest=True).displacement < 4.05
+    assert key_frames(graph, meshes, **ends, position=(0.0, 4.04)).displacement < 4.05
+
+
+def test_without_transitions_takes_play_as_captured(
+    graph: MotionGraph, meshes: Mapping[str, MeshSequence]
+) -> None:
+    bare = kept(graph, np.zeros(0, int))
+    path = key_frames(bare, meshes, start="slow:3", via=("slow:20",), end="slow:60")
+    assert path.duration[0] == pytest.approx(58 / 25)
+    assert len(path.transition) == 0
+    assert path.cost == 0
+    with pytest.raises(ValueError, match="nearest that can be met") as error:
+        key_frames(bare, meshes, start="slow:3", end="slow:60", duration=5.0)
+    assert named(error)[1] == pytest.approx(58 / 25)
+    with pytest.raises(ValueError, match="no way leads from slow:3 to fast:9"):
+        key_frames(bare, meshes, start="slow:3", end="fast:9")
+    with pytest.raises(ValueError, match="no way leads from slow:60 to slow:3"):
+        key_frames(bare, meshes, start="slow:60", end="slow:3")
+
+
+def test_a_take_of_three_frames_plays_but_joins_nothing(meshes: Mapping[str, MeshSequence]) -> None:
+    slow, fast = meshes["slow"], meshes["fast"]
+    brief = fast._replace(vertices=np.asarray(fast.vertices)[20:23])
+    takes = {"slow": slow, "brief": brief}
+    similarity = {(a, b): vertex_velocity((takes[a], takes[b])) for a in takes for b in takes}
+    joined = surface(similarity, takes, transitions=4)
+    path = key_frames(joined, takes, start="brief:0", end="brief:2")
+    assert path.duration[0] == pytest.approx(3 / 25)
+    with pytest.raises(ValueError, match="no way leads from slow:3 to brief:1"):
+        key_frames(joined, takes, start="slow:3", end="brief:1")
+    with pytest.raises(ValueError, match=r"nearest that can be met is .* in 0\.12 s"):
+        key_frames(joined, takes, start="brief:0", end="brief:2", duration=2.0)
 
 
 def test_position_and_heading_draw_the_end_to_them(

@@ -47,7 +47,8 @@ def test_through_others_in_order(small: MotionGraph, meshes: Mapping[str, MeshSe
 def test_what_cannot_be_met_or_counted_is_said(
     small: MotionGraph, meshes: Mapping[str, MeshSequence]
 ) -> None:
-    with pytest.raises(ValueError, match="no walk through slow:3, turn:40 covers 30 m in 4 s"):
+    told = "no walk through slow:3, turn:40 covers 30 m in 4 s .* nearest that can be met is .* widen the tolerances$"
+    with pytest.raises(ValueError, match=told):
         key_frames_ilp(small, meshes, **ENDS, distance=30.0, duration=4.0)
     with pytest.raises(ValueError, match="more than 3 loops"):
         key_frames_ilp(small, meshes, **ENDS, duration=8.0, loops=3)
