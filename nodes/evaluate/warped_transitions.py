@@ -49,13 +49,13 @@ def warped_transitions(
 ) -> Measures:
     """Skate, volume and acceleration of a graph's blended transitions and of fixed ones between the same poses.
 
-    A row per drawn transition from pose i to pose j. `warped`: as synthesis.play_walk plays it, volume kept and feet
-    held; `unheld`: the same without both; `fixed`: frames i .. i + n blended linearly with j - n .. j, n = fixed fps,
-    weights even steps, one placement for the whole window. Of each: `skate`, the mean speed of resting soles (both
-    sources rest on them) over the blended frames, m/s; `volume`, the greatest |V - V_mean| / V_mean, V_mean the
-    sources' volumes in the blend's weights; `junction`, the 99th percentile over vertices of the acceleration, greatest
-    over the frames where captured and blended ones meet, over the capture's 99th percentile over frames. nan where no
-    foot rests.
+    A row per drawn transition from pose i to pose j. `warped`: as synthesis.play_walk plays it, feet held and then
+    volume kept, which leaves no error of volume by construction; `unheld`: the same without both; `fixed`: frames
+    i .. i + n blended linearly with j - n .. j, n = fixed fps, weights even steps, one placement for the whole window.
+    Of each: `skate`, the mean speed of resting soles (both sources rest on them) over the blended frames, m/s;
+    `volume`, the greatest |V - V_mean| / V_mean, V_mean the sources' volumes in the blend's weights; `junction`, the
+    99th percentile over vertices of the acceleration, greatest over the frames where captured and blended ones meet,
+    over the capture's 99th percentile over frames. nan where no foot rests.
 
     Raises ValueError where the graph has no blended transition with room for a fixed one.
     Source: 002 figs 2-3 (Boukhayma and Boyer 2015, 3DV), which shows pictures only.
@@ -71,10 +71,11 @@ def warped_transitions(
         before, after = _lead(ready, e)
         warped = judge.play(play_moves(ready.moves, [*before, e, *after]), "nonlinear")
         linear = judge.play(_fixed(ready, takes, e, steps, len(before), len(after)), "linear")
-        rows.append([*judge.marks(judge.held(warped)), judge.marks(warped)[0], *judge.marks(linear)])
-    names = [f"warped {what}" for what in ("skate", "volume", "junction")] + ["unheld skate"]
+        rows.append([*judge.marks(judge.held(warped)), *judge.marks(warped)[:2], *judge.marks(linear)])
+    names = [f"warped {what}" for what in ("skate", "volume", "junction")]
+    names += ["unheld skate", "unheld volume"]
     names += [f"fixed {what}" for what in ("skate", "volume", "junction")]
-    units = ["m/s", "1", "1", "m/s", "m/s", "1", "1"]
+    units = ["m/s", "1", "1", "m/s", "1", "m/s", "1", "1"]
     return Measures(np.array(rows), np.array(names), np.array(units))
 
 
@@ -171,16 +172,15 @@ class _Judge:
         return _Played(vertices, frames, planted)
 
     def held(self, played: _Played) -> _Played:
-        """With the volume of the sources, and feet held."""
-        vertices = np.stack(
-            [
-                with_volume(mesh, self.faces, float(wanted))
-                for mesh, wanted in zip(played.vertices, self.wanted_volume(played), strict=True)
-            ]
-        )
+        """With feet held, then the volume of the sources."""
+        vertices = played.vertices
         if self.fields is not None:
             vertices = hold_feet(vertices, self.contacts.foot, played.planted, self.fields, self.fps)
-        return played._replace(vertices=vertices)
+        wanted = self.wanted_volume(played)
+        full = [
+            with_volume(mesh, self.faces, float(size)) for mesh, size in zip(vertices, wanted, strict=True)
+        ]
+        return played._replace(vertices=np.stack(full))
 
     def wanted_volume(self, played: _Played) -> np.ndarray:
         """The sources' volumes in the weights of each frame, (F,)."""

@@ -29,4 +29,6 @@ def test_held_feet_stand_and_others_slide(marks):
 def test_every_mark_is_measured_once_per_transition(marks):
     assert all(len(column) == 5 for column in marks.values())
     assert (marks["warped volume"] >= 0).all()
+    # what holding feet does to the volume is made good
+    assert marks["warped volume"].max() < 1e-4 < marks["unheld volume"].max() < marks["fixed volume"].max()
     assert (marks["fixed junction"] > 0).all()
