@@ -16,6 +16,11 @@ from reperform.nodes.product import Dataset
 from reperform.nodes.products.measures import Measures
 from reperform.nodes.products.mesh import MeshSequence
 from reperform.nodes.products.motion import MotionGraph
+from reperform.nodes.synthesis.key_frame_parameters import (
+    DistanceTolerance,
+    DurationTolerance,
+    Keys,
+)
 from reperform.nodes.synthesis.key_frame_targets import asked_targets, moves_between
 
 _WHO = "evaluate.target_time"
@@ -29,11 +34,11 @@ def target_time(
     graph: MotionGraph,
     meshes: Dataset[MeshSequence],
     *,
-    keys: Annotated[tuple[str, ...], Param(about="key-frame sequences, each TAKE:FRAME > TAKE:FRAME > ...")],
+    keys: Keys,
     distances: Annotated[tuple[float, ...], Param("m", about="targets")] = (4.0, 8.0, 12.0, 16.0, 20.0),
     durations: Annotated[tuple[float, ...], Param("s", about="targets")] = (8.0, 16.0, 24.0, 32.0, 40.0),
-    distance_tolerance: Annotated[float, Param("m", 1e-6, 1000.0, "greatest error of the distance")] = 0.05,
-    duration_tolerance: Annotated[float, Param("s", 1e-6, 600.0, "greatest error of the duration")] = 0.08,
+    distance_tolerance: DistanceTolerance = 0.05,
+    duration_tolerance: DurationTolerance = 0.08,
     programmes: Annotated[int, Param("1", 0, 1000, "targets that the integer programme solves too")] = 2,
     cells: Annotated[float, Param("1e6", 1.0, 4000.0, "size of the table")] = 150.0,
     patience: Annotated[float, Param("s", 0.1, 1e5, "after which an integer programme is cut off")] = 20.0,

@@ -2,10 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
-
-from reperform.nodes.declaration import Param, node
+from reperform.nodes.declaration import node
 from reperform.nodes.motion_graph.surface import surface
+from reperform.nodes.motion_graph.transition_parameters import (
+    Apart,
+    Forbid,
+    Jerk,
+    Length,
+    Longest,
+    Only,
+    Remove,
+    SelfTransitions,
+    Shortest,
+    Threshold,
+    Transitions,
+)
 from reperform.nodes.product import Dataset, Pairs
 from reperform.nodes.products.motion import Dissimilarity, MotionGraph
 from reperform.nodes.products.performance import SkeletonSequence
@@ -17,31 +28,17 @@ def skeletal(
     similarity: Pairs[Dissimilarity],
     skeletons: Dataset[SkeletonSequence],
     *,
-    transitions: Annotated[int, Param("1", 1, 100, "transitions kept per ordered pair of takes (N)")] = 4,
-    shortest: Annotated[float, Param("s", 0.02, 2.0, "least half length L of a transition")] = 0.2,
-    longest: Annotated[float, Param("s", 0.02, 2.0, "greatest half length L of a transition")] = 0.96,
-    length: Annotated[
-        Literal["smooth", "similar"],
-        Param(about="L: the shortest that jerks little enough, or the one of least cost"),
-    ] = "smooth",
-    jerk: Annotated[
-        float, Param("1", 0.0, 100.0, "greatest acceleration at a join over the capture's; 0 takes any")
-    ] = 1.5,
-    threshold: Annotated[
-        float, Param("1", 0.0, 1.0, "greatest cost, in units of the largest dissimilarity of the dataset")
-    ] = 0.5,
-    self_transitions: Annotated[bool, Param(about="whether a take may pass into itself")] = True,
-    apart: Annotated[float, Param("s", 0.0, 60.0, "least time between both ends within one take")] = 0.4,
-    remove: Annotated[
-        tuple[str, ...],
-        Param(about="transitions to leave out: SOURCE>TARGET, each TAKE, TAKE:FRAME or TAKE:FIRST-LAST"),
-    ] = (),
-    only: Annotated[
-        tuple[str, ...], Param(about="if any, the only transitions to keep, written as for `remove`")
-    ] = (),
-    forbid: Annotated[
-        tuple[str, ...], Param(about="frames that no transition may blend: TAKE or TAKE:FIRST-LAST")
-    ] = (),
+    transitions: Transitions = 4,
+    shortest: Shortest = 0.2,
+    longest: Longest = 0.96,
+    length: Length = "smooth",
+    jerk: Jerk = 1.5,
+    threshold: Threshold = 0.5,
+    self_transitions: SelfTransitions = True,
+    apart: Apart = 0.4,
+    remove: Remove = (),
+    only: Only = (),
+    forbid: Forbid = (),
 ) -> MotionGraph:
     """Takes of one skeleton as nodes, and for every ordered pair its N best transitions (m, n, L) as edges.
 

@@ -15,6 +15,17 @@ from reperform.nodes.product import Dataset
 from reperform.nodes.products.mesh import MeshSequence
 from reperform.nodes.products.motion import MotionGraph, MotionPath
 from reperform.nodes.synthesis.graph_walk import passages_of
+from reperform.nodes.synthesis.key_frame_parameters import (
+    Distance,
+    DistanceTolerance,
+    DistanceWeight,
+    Duration,
+    DurationTolerance,
+    DurationWeight,
+    End,
+    Start,
+    Via,
+)
 from reperform.nodes.synthesis.key_frame_targets import (
     asked_targets,
     infeasible,
@@ -33,18 +44,15 @@ def key_frames(
     graph: MotionGraph,
     meshes: Dataset[MeshSequence],
     *,
-    start: Annotated[str, Param(about="first key frame, as TAKE:FRAME")],
-    end: Annotated[str, Param(about="last key frame, as TAKE:FRAME")],
-    via: Annotated[
-        tuple[str, ...], Param(about="key frames to meet in between, in order, as TAKE:FRAME")
-    ] = (),
-    distance: Annotated[float | None, Param("m", 0.0, 1000.0, "way of the centroid on the ground")] = None,
-    duration: Annotated[float | None, Param("s", 0.0, 600.0, "length of the motion")] = None,
-    distance_weight: Annotated[float, Param("1/m", 0.0, 1e6, "cost of a metre too far or too short")] = 10
-    / 3,
-    duration_weight: Annotated[float, Param("1/s", 0.0, 1e6, "cost of a second too long or too short")] = 2.5,
-    distance_tolerance: Annotated[float, Param("m", 0.0, 1000.0, "greatest error of the distance")] = 0.05,
-    duration_tolerance: Annotated[float, Param("s", 0.0, 600.0, "greatest error of the duration")] = 0.08,
+    start: Start,
+    end: End,
+    via: Via = (),
+    distance: Distance = None,
+    duration: Duration = None,
+    distance_weight: DistanceWeight = 10 / 3,
+    duration_weight: DurationWeight = 2.5,
+    distance_tolerance: DistanceTolerance = 0.05,
+    duration_tolerance: DurationTolerance = 0.08,
     position: Annotated[
         tuple[float, ...],
         Param("m", about="where to end on the ground: x, z from where it starts; empty: anywhere"),

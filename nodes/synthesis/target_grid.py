@@ -13,6 +13,13 @@ from reperform.nodes.product import Dataset
 from reperform.nodes.products.mesh import MeshSequence
 from reperform.nodes.products.motion import MotionGraph
 from reperform.nodes.products.target_grid import TargetGrid
+from reperform.nodes.synthesis.key_frame_parameters import (
+    DistanceTolerance,
+    DistanceWeight,
+    DurationTolerance,
+    DurationWeight,
+    Keys,
+)
 from reperform.nodes.synthesis.key_frame_targets import asked_targets, moves_between
 
 _WHO = "synthesis.target_grid"
@@ -26,7 +33,7 @@ def target_grid(
     graph: MotionGraph,
     meshes: Dataset[MeshSequence],
     *,
-    keys: Annotated[tuple[str, ...], Param(about="key-frame sequences, each TAKE:FRAME > TAKE:FRAME > ...")],
+    keys: Keys,
     distances: Annotated[tuple[float, float, float], Param("m", about="targets: first, last, step")] = (
         1.0,
         20.0,
@@ -37,11 +44,10 @@ def target_grid(
         40.0,
         1.0,
     ),
-    distance_weight: Annotated[float, Param("1/m", 0.0, 1e6, "cost of a metre too far or too short")] = 10
-    / 3,
-    duration_weight: Annotated[float, Param("1/s", 0.0, 1e6, "cost of a second too long or too short")] = 2.5,
-    distance_tolerance: Annotated[float, Param("m", 1e-6, 1000.0, "greatest error of the distance")] = 0.05,
-    duration_tolerance: Annotated[float, Param("s", 1e-6, 600.0, "greatest error of the duration")] = 0.08,
+    distance_weight: DistanceWeight = 10 / 3,
+    duration_weight: DurationWeight = 2.5,
+    distance_tolerance: DistanceTolerance = 0.05,
+    duration_tolerance: DurationTolerance = 0.08,
     cells: Annotated[
         float, Param("1e6", 1.0, 4000.0, "size of the table; finer distances with more")
     ] = 150.0,
