@@ -17,6 +17,7 @@ from reperform.nodes.kernels.registration import (
     Pull,
     Stage,
     Template,
+    Tracker,
     make_template,
     misfit,
     predict,
@@ -72,6 +73,10 @@ def register(
     stiffness: Annotated[
         float, Param("1", 0.0, 1000.0, "resistance to change of shape against one closest point")
     ] = 0.2,
+    slip: Annotated[
+        float,
+        Param("1", 0.05, 1000.0, "change of shape, against its size, at which it is no longer resisted"),
+    ] = 0.5,
     tangential: Annotated[
         float, Param("1", 0.0, 1.0, "share of a closest point's pull that is not along its normal")
     ] = 0.4,
@@ -92,8 +97,9 @@ def register(
     is carried on by its motion (consecutive frames; where a take is entered, time is followed first in the direction
     in which less moves, and that motion continued in the other) or turned and shifted on the ground to where shape
     histograms agree best (frames of other times or takes), then fitted from coarse to fine by deformation
-    graphs, E = sum rho(x_i - y_i) + stiffness sum_(jk) |R_j a_jk - (g_k - g_j)|^2, with rho Welsch's loss
-    of two-way closest points of compatible normals and a_jk the root's lengths in the parent's pose.
+    graphs, E = sum rho(x_i - y_i) + stiffness sum_(jk) rho(R_j a_jk - (g_k - g_j)), with rho Welsch's loss
+    of two-way closest points of compatible normals, and of changes of shape of the scale slip |a_jk|, a_jk the
+    root's lengths in the parent's pose.
 
     Where footage and cameras are given, E has a term texture sum_(ic) rho(distance of x_i from the line of
     sight of camera c on which the texture of vertex i is found again): it tells crossing legs apart and
@@ -123,7 +129,7 @@ def register(
         parent, order = chain_takes(tree.take, tree.frame_index, tree.parent, tree.distance, int(order[0]))
     first = frames[order[0]]
     template = make_template(first.vertices, first.faces, patches, levels)
-    stages = _stages(template, reach, detail, stiffness, iterations)
+    stages = _stages(template, reach, detail, stiffness, slip, iterations)
     pull = Pull(_NORMAL_LENGTH, tangential, prior, texture)
     views = None
     if footage is not None and cameras is not None and texture > 0:
@@ -136,17 +142,30 @@ def register(
         tree.take, tree.frame_index, parent, _NEAR, lambda k: _change(frames[int(parent[k])], frames[k])
     )
 
+    row = {(frame.take, frame.instant): k for k, frame in enumerate(frames)}
+
     def visit(k: int) -> None:
         if k == order[0]:
             return
+        up = int(parent[k])
         target = fit_target(frames[k].vertices, frames[k].faces, pull.normal_length)
-        start = _start(
-            template, frames, aligned, int(parent[k]), int(before[k]), k, target, stages[0].scale, pull
-        )
         tracker = None
         if views is not None:
-            up = int(parent[k])
             tracker = views.tracker((names[up], names[k]), aligned[up], template.faces, round_trip)
+        step = frames[k].instant - frames[up].instant
+        if frames[k].take != frames[up].take or abs(step) > _NEAR:
+            start = _placed(template, frames, aligned[up], up, k, target, stages[0], pull)
+        else:
+            options = [aligned[up]]
+            if before[k] >= 0:
+                came = frames[up].instant - frames[int(before[k])].instant
+                options.append(predict(template, aligned[up], aligned[int(before[k])], step / came))
+            elif (ahead := row.get((frames[k].take, frames[k].instant + step))) is not None:
+                options.append(
+                    _halfway(template, aligned[up], target, frames[ahead], stages[:1], pull, tracker)
+                )
+            costs = [misfit(template, pose, target, stages[0].scale, pull) for pose in options]
+            start = options[int(np.argmin(costs))]
         aligned[k] = fit(template, start, target, stages, pull, tracker)
         figures[k] = _figures(template, aligned[k], frames[k], lengths)
 
@@ -219,48 +238,58 @@ def _change(first: _Frame, second: _Frame) -> float:
 
 
 def _stages(
-    template: Template, reach: float, detail: float, stiffness: float, iterations: int
+    template: Template, reach: float, detail: float, stiffness: float, slip: float, iterations: int
 ) -> tuple[Stage, ...]:
     scales = np.geomspace(reach, detail, len(template.graphs))
     return tuple(
-        Stage(graph, float(scale), stiffness * float(scale / scales[0]), iterations)
+        Stage(graph, float(scale), stiffness * float(scale / scales[0]), iterations, slip)
         for graph, scale in zip(template.graphs, scales, strict=True)
     )
 
 
-def _start(
+def _placed(
     template: Template,
     frames: list[_Frame],
-    aligned: dict[int, np.ndarray],
+    pose: np.ndarray,
     up: int,
-    before: int,
     k: int,
     target: FitTarget,
-    scale: float,
+    stage: Stage,
     pull: Pull,
 ) -> np.ndarray:
-    """The pose to start from: the best of what the way to this frame suggests."""
+    """The pose of a frame `up`, turned and shifted on the ground to where it fits a frame of another time or take."""
     here, there = frames[k], frames[up]
-    step = here.instant - there.instant
-    if here.take == there.take and abs(step) <= _NEAR:
-        options = [aligned[up]]
-        if before >= 0:
-            came = there.instant - frames[before].instant
-            options.append(predict(template, aligned[up], aligned[before], step / came))
-        costs = [misfit(template, pose, target, scale, pull) for pose in options]
-        return options[int(np.argmin(costs))]
     turns = [(0.0, here.vertices.mean(axis=0) - there.vertices.mean(axis=0))]
     turns += likely_turns((there.vertices, there.faces), (here.vertices, here.faces), _TURNS)
-    best, least = aligned[up], np.inf
+    best, least = pose, np.inf
     for yaw, shift in turns:
-        pose, cost = register_rigidly(
-            template, aligned[up] @ turn_matrix(yaw).T + shift, target, scale, 4, pull
+        placed, cost = register_rigidly(
+            template, pose @ turn_matrix(yaw).T + shift, target, stage.scale, 4, pull
         )
         # a body is nearly the same seen from the back: believe a large turn only for a clear gain
         cost *= 1 + 0.1 * abs(yaw) / np.pi
         if cost < least:
-            best, least = pose, cost
+            best, least = placed, cost
     return best
+
+
+def _halfway(
+    template: Template,
+    pose: np.ndarray,
+    target: FitTarget,
+    ahead: _Frame,
+    stages: tuple[Stage, ...],
+    pull: Pull,
+    tracker: Tracker | None,
+) -> np.ndarray:
+    """Where a first step leads, by a look at the second: halfway from `pose` to a coarse fit of the frame `ahead`.
+
+    A limb that is lost over the first step is often found again over two, from where the rest of the body leads.
+    """
+    first = fit(template, pose, target, stages, pull, tracker)
+    further = fit_target(ahead.vertices, ahead.faces, pull.normal_length)
+    second = fit(template, predict(template, first, pose, 1.0), further, stages, pull)
+    return predict(template, second, pose, -0.5)
 
 
 def _figures(template: Template, moved: np.ndarray, frame: _Frame, pairs: np.ndarray) -> tuple[float, float]:

@@ -65,20 +65,24 @@ def fit_step(
     pull: np.ndarray,
     force: np.ndarray,
     stiffness: float,
+    slip: float = np.inf,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """One Gauss-Newton step of E = sum_i (x_i - c_i)' A_i (x_i - c_i) + stiffness V / E sum_(jk) |e_jk|^2 +
-    |e_kj|^2.
+    """One Gauss-Newton step of E = sum_i (x_i - c_i)' A_i (x_i - c_i) + stiffness V / E sum_(jk) rho(e_jk) +
+    rho(e_kj), rho(e) = |e|^2 for small e.
 
     pull: A (V, 3, 3); force: A_i (c_i - x_i) at the present x (V, 3). e_jk = R_j (g_k - g_j) + g_j + t_j -
     g_k - t_k keeps neighbouring motions alike; it compares with the rest shape, so changes of shape do not
-    build up from fit to fit. Returns the new rotations and translations.
+    build up from fit to fit. rho is Welsch's loss of scale slip |g_k - g_j|: a link that is bent or stretched by more
+    lets go, so that a foot slides along the hem that the rest surface joins it to. Returns the new rotations and
+    translations.
+    Source: Yao, Deng, Xu and Zhang, CVPR 2020 (Welsch's loss of closest points and of smoothness).
     """
     count = len(graph.places)
     band = np.zeros((6 * graph.bandwidth + 6, 6 * count))
     right = np.zeros(6 * count)
     _assemble_data(band, right, vertices, graph.influence, graph.weight, graph.places, rotation, pull, force)
     weight = stiffness * len(vertices) / max(len(graph.links), 1)
-    _assemble_links(band, right, graph.links, arms, graph.places, rotation, translation, weight)
+    _assemble_links(band, right, graph.links, arms, graph.places, rotation, translation, weight, slip)
     # far less than any datum: keeps nodes solvable that nothing pulls
     band[0] += 1e-6 * len(vertices) / count
     step = solveh_banded(
@@ -210,7 +214,8 @@ def _assemble_links(
     places: np.ndarray,
     rotation: np.ndarray,
     translation: np.ndarray,
-    weight: float,
+    stiffness: float,
+    slip: float,
 ) -> None:
     """Add both residuals of every link: de_jk = domega_j x q + dt_j - dt_k, q = R_j (g_k - g_j)."""
     q = np.zeros(3)
@@ -224,6 +229,10 @@ def _assemble_links(
             e0 = q[0] + places[j, 0] + translation[j, 0] - places[k, 0] - translation[k, 0]
             e1 = q[1] + places[j, 1] + translation[j, 1] - places[k, 1] - translation[k, 1]
             e2 = q[2] + places[j, 2] + translation[j, 2] - places[k, 2] - translation[k, 2]
+            square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2]
+            weight = stiffness * welsch(e0 * e0 + e1 * e1 + e2 * e2, slip * math.sqrt(max(square, 1e-12)))
+            if weight == 0:
+                continue
             a, b = 6 * j, 6 * k
             right[a + 0] -= weight * (q[1] * e2 - q[2] * e1)
             right[a + 1] -= weight * (q[2] * e0 - q[0] * e2)
@@ -234,7 +243,6 @@ def _assemble_links(
             right[b + 3] += weight * e0
             right[b + 4] += weight * e1
             right[b + 5] += weight * e2
-            square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2]
             for r in range(3):
                 band[0, a + r] += weight * (square - q[r] * q[r])
                 band[0, a + 3 + r] += weight

@@ -36,6 +36,7 @@ class Stage(NamedTuple):
     scale: float  # of the Welsch loss, m
     stiffness: float
     iterations: int
+    slip: float = np.inf  # at which stretch a link lets go, as a share of its length
 
 
 class Pull(NamedTuple):
@@ -97,7 +98,7 @@ def register(
             if sights is not None:
                 add_sight_pull(sights, moved, _TRACK_SCALE * stage.scale, pull.texture, tensor, force)
             rotation, translation = fit_step(
-                graph, start, rotation, translation, arms, tensor, force, stage.stiffness
+                graph, start, rotation, translation, arms, tensor, force, stage.stiffness, stage.slip
             )
             moved = deform(graph, start, rotation, translation)
     finest = stages[-1].graph

@@ -94,3 +94,31 @@ def test_bending_already_done_has_no_cost(scene):
     assert (lengths > 0.85 * true[:, None]).all()
     np.testing.assert_allclose(arms[:, 0], -arms[:, 1])
     assert start.places.shape == (20, 3)
+
+
+def _pulled_apart(scene, slip):
+    """How far the upper half of a body comes short of a goal 0.5 m above it, the lower half held."""
+    vertices, graph = scene
+    goal = vertices + np.outer(vertices[:, 1] > 1.0, (0, 0.5, 0))
+    rotation, translation = _rest(graph)
+    arms = link_arms(graph, vertices, rotation, rotation)
+    pull = np.tile(np.eye(3), (len(vertices), 1, 1))
+    # it slips a little at a time, as from frame to frame
+    for share in np.linspace(0.1, 1, 10):
+        target = vertices + share * (goal - vertices)
+        for _ in range(4):
+            force = target - deform(graph, vertices, rotation, translation)
+            rotation, translation = fit_step(
+                graph, vertices, rotation, translation, arms, pull, force, 0.2, slip
+            )
+    away = np.linalg.norm(deform(graph, vertices, rotation, translation) - goal, axis=1)
+    return away[vertices[:, 1] > 1.4].mean()
+
+
+def test_links_that_are_stretched_too_far_let_go(scene):
+    firm, loose = _pulled_apart(scene, np.inf), _pulled_apart(scene, 0.3)
+    assert loose < firm / 2
+
+
+def test_links_that_are_hardly_stretched_hold(scene):
+    assert _pulled_apart(scene, 1e3) == pytest.approx(_pulled_apart(scene, np.inf), rel=1e-3)
