@@ -55,3 +55,18 @@ def test_loops_in_another_order_are_searched_once() -> None:
     assert cost == pytest.approx(0.8, abs=1e-6)
     # at most (loops of the one kind, loops of the other): 5 x 5 places, each reached by at most two labels
     assert used <= 51
+
+
+@pytest.mark.parametrize("dear", [1, 2])
+def test_of_walks_alike_the_cheapest_stays(dear: int) -> None:
+    # two loops of the same steps and length at one place, one of them three times as dear
+    cost = np.array([0.0, 0.1, 0.1, 0.0], np.float32)
+    cost[dear] = 0.3
+    moves = Moves(
+        np.array([0, 1, 4]), np.array([1, 1, 1, -1]), np.array([0, 3, 3, 1]), np.array([0.0, 0.1, 0.1, 0.05]),
+        cost, np.full(4, -1), np.zeros(4), np.zeros(4),
+    )  # fmt: skip
+    table = fill_table(moves, 20, 3.0, 0.01, 1.0)
+    edges, total, _ = search_walk(moves, table, 16, 0.55, 1e-3, 1.0, np.inf, 10_000, 10_000)
+    assert dear not in edges
+    assert total == pytest.approx(0.5, abs=1e-6)
