@@ -11,6 +11,7 @@ from reperform.nodes.kernels.transition_tables import (
     EdgeTables,
     SpaceTables,
     reference_weights,
+    stride,
     variance,
 )  # fmt: skip
 
@@ -30,6 +31,11 @@ class Trellis(NamedTuple):
     reference: np.ndarray
     weight: np.ndarray
     variance: np.ndarray
+    # the pose next to it, on in the trellis' direction (-1: none): variance, squared step and seconds to there
+    beside: np.ndarray
+    variance_beside: np.ndarray
+    stride: np.ndarray
+    pace: np.ndarray
     # first and last + 1 state at each moment; -1 where they are not laid out yet
     begin: np.ndarray
     end: np.ndarray
@@ -39,7 +45,7 @@ class Trellis(NamedTuple):
 
 
 class Found(NamedTuple):
-    """A transition: written in place, so that searching allocates nothing."""
+    """A transition, at poses that are not whole: written in place, so that searching allocates nothing."""
 
     # leave at this pose and control
     source_pose: np.ndarray
@@ -49,8 +55,9 @@ class Found(NamedTuple):
     target_control: np.ndarray
     # E_S, lambda E_L (thousandths), seconds until the transition and seconds from there to the wanted state
     cost: np.ndarray
-    # scratch: least cost of every pair of moments
+    # scratch: least cost of every pair of moments, and of every moment of the source
     lower: np.ndarray
+    row: np.ndarray
 
 
 def new_trellis(space: SpaceTables, depth: int, step: float = 0.1) -> Trellis:
@@ -60,7 +67,8 @@ def new_trellis(space: SpaceTables, depth: int, step: float = 0.1) -> Trellis:
     room = moments * (1 + d * (2 + int(1 / step)))
     return Trellis(
         np.zeros(1, np.int64), np.zeros(room, np.int64), np.zeros((room, d)), np.zeros(room),
-        np.zeros((room, d + 1), np.int64), np.zeros((room, d + 1)), np.zeros(room), np.zeros(moments, np.int64),
+        np.zeros((room, d + 1), np.int64), np.zeros((room, d + 1)), np.zeros(room), np.zeros(room, np.int64),
+        np.zeros(room), np.zeros(room), np.zeros(room), np.zeros(moments, np.int64),
         np.zeros(moments, np.int64), np.zeros(d + 1), np.zeros(d),
     )  # fmt: skip
 
@@ -73,8 +81,8 @@ def new_found(tables: EdgeTables, depth: int = 20, step: float = 0.1) -> Found:
         for side in (tables.source, tables.target)
     ]
     return Found(
-        np.zeros(1, np.int64), np.zeros(source), np.zeros(1, np.int64), np.zeros(target), np.zeros(4),
-        np.zeros((moments[0], moments[1])),
+        np.zeros(1), np.zeros(source), np.zeros(1), np.zeros(target), np.zeros(4),
+        np.zeros((moments[0], moments[1])), np.zeros(moments[0]),
     )  # fmt: skip
 
 
@@ -153,13 +161,39 @@ def _add(space: SpaceTables, first: int, at: int, direction: int, out: Trellis) 
     out.pose[row], out.seconds[row] = pose, seconds
     out.control[row] = out.start
     out.variance[row] = variance(space, pose, reference, weight)
+    out.beside[row] = _beside(space, pose, direction)
+    if out.beside[row] >= 0:
+        begin = pose if direction > 0 else out.beside[row]
+        out.variance_beside[row] = variance(space, out.beside[row], reference, weight)
+        out.stride[row] = stride(space, begin, reference, weight)
+        pace = 0.0
+        for k in range(len(reference)):
+            pace += weight[k] * (space.clock[reference[k], begin + 1] - space.clock[reference[k], begin])
+        out.pace[row] = pace
     out.size[0] = row + 1
+
+
+@njit(cache=True, nogil=True)
+def _beside(space: SpaceTables, pose: int, direction: int) -> int:
+    """The next pose in a direction; -1 where a motion that is not cyclic ends."""
+    poses = space.spread.shape[0]
+    beside = pose + (1 if direction > 0 else -1)
+    if space.cyclic:
+        return beside % poses
+    return beside if 0 <= beside < poses else -1
 
 
 @njit(cache=True, nogil=True)
 def bound(distance: np.ndarray, source: Trellis, s: int, target: Trellis, t: int) -> float:
     """Upper bound of a squared distance: sum_pq r_p r_q D_pq (004 eq 4.5 for the dissimilarity)."""
-    total, i, j = 0.0, source.pose[s], target.pose[t]
+    return _bound_at(distance, source, s, source.pose[s], target, t, target.pose[t])
+
+
+@njit(cache=True, nogil=True)
+def _bound_at(
+    distance: np.ndarray, source: Trellis, s: int, i: int, target: Trellis, t: int, j: int
+) -> float:
+    total = 0.0
     for p in range(source.reference.shape[1]):
         row, part = source.reference[s, p], 0.0
         for q in range(target.reference.shape[1]):
@@ -200,12 +234,18 @@ def best_transition(
     transition. Transitions above the threshold (dissimilarity) are refused. source, target, found: room from
     new_trellis and new_found; nothing is allocated.
 
-    Trellises reach `depth` steps, as in `fill_trellis`, but pass every pose. Pairs of moments are visited from the
-    least lower bound of their cost (least tabulated distance less the greatest variance, quickest way there) until no
-    bound is below the best, so the result is the best of all states though few are laid out.
+    Trellises reach `depth` steps, as in `fill_trellis`, but pass every moment: between two poses x, x' of the source and
+    two y, y' of the target, a and b of the way on, the cost is a convex polynomial whose least value follows at once,
+
+        |(1 - a) x + a x' - (1 - b) y - b y'|^2
+            = (1 - a)(1 - b) D + a (1 - b) D_x' + (1 - a) b D_y' + a b D_x'y' - a (1 - a) |x' - x|^2 - b (1 - b) |y' - y|^2
+
+    Pairs of poses are visited from the least lower bound of their cost (least tabulated distance less what blending can
+    gain, quickest way there) until no bound is below the best, so the result is the best of all states though few are
+    laid out.
 
     Source: 004 eqs 4.2, 4.6, section 4.4.1; Land and Doig 1960, Econometrica 28 (branch and bound).
-    Departure: dissimilarity is minimised (as printed, a similarity is); every pose, where 004 takes one in ten.
+    Departure: dissimilarity is minimised (as printed, a similarity is); all moments, where 004 takes one pose in ten.
     """
     anywhere = target_pose < 0
     first = int(np.floor(source_pose + 0.5))
@@ -215,18 +255,18 @@ def best_transition(
     n = poses if anywhere else _moments(tables.target, last, -1, depth, step)
     latency = latency_weight * RATE
     _lower_bounds(tables, first, last, m, n, anywhere, latency, found.lower)
+    for i in range(m):
+        found.row[i] = found.lower[i, :n].min()
     source.size[0], target.size[0] = 0, 0
     source.begin[:m], target.begin[:n] = -1, -1
     best = np.inf
     while True:
-        i, j, least = 0, 0, np.inf
-        for a in range(m):
-            for b in range(n):
-                if found.lower[a, b] < least:
-                    i, j, least = a, b, found.lower[a, b]
-        if least >= best:
+        i = int(np.argmin(found.row[:m]))
+        if found.row[i] >= best:
             break
+        j = int(np.argmin(found.lower[i, :n]))
         found.lower[i, j] = np.inf
+        found.row[i] = found.lower[i, :n].min()
         if source.begin[i] < 0:
             changes = int(i / (step * tables.source.spread.shape[0]) + _SAME)
             _at_moment(tables.source, first, i, 1, source_control, changes, step, source)
@@ -234,7 +274,10 @@ def best_transition(
             changes = 0 if anywhere else int(j / (step * poses) + _SAME)
             _at_moment(tables.target, j if anywhere else last, 0 if anywhere else j, -1, target_control, changes, step,
                        target, j)  # fmt: skip
-        best = _cheapest(tables, source, i, target, j, latency, threshold, best, found)
+        ahead, behind = i + 1 < m, anywhere or j + 1 < n
+        best = _cheapest(
+            tables, source, i, ahead, target, j, behind, anywhere, latency, threshold, best, found
+        )
     return best < np.inf
 
 
@@ -263,7 +306,8 @@ def _lower_bounds(
             to = j if anywhere else (last - j) % other
             if j > 0 and not anywhere:
                 passed += tables.target.quickest[to]
-            shape = tables.least[at, to] - tables.source.loosest[at] - tables.target.loosest[to]
+            # the pair of poses is entered from here and left towards the pose before
+            shape = tables.least[at, (to - 1) % other if tables.target.cyclic else max(to - 1, 0)]
             out[i, j] = max(scale * shape, 0.0) + latency * (waited + passed)
         waited += tables.source.quickest[at]
 
@@ -281,22 +325,98 @@ def _at_moment(
 
 @njit(cache=True, nogil=True)
 def _cheapest(
-    tables: EdgeTables, source: Trellis, i: int, target: Trellis, j: int, latency: float, threshold: float,
-    best: float, found: Found,
+    tables: EdgeTables, source: Trellis, i: int, ahead: bool, target: Trellis, j: int, behind: bool, anywhere: bool,
+    latency: float, threshold: float, best: float, found: Found,
 ) -> float:  # fmt: skip
-    """The least cost among the states of two moments, if it is below `best`; `found` then holds it."""
+    """The least cost from the states of two moments on, if it is below `best`; `found` then holds it.
+
+    ahead, behind: whether the trellises go on to the next pose of the source and to that before of the target.
+    """
+    scale = SHAPE / tables.largest
     for s in range(source.begin[i], source.end[i]):
+        on = ahead and source.beside[s] >= 0
         for t in range(target.begin[j], target.end[j]):
             late = latency * (source.seconds[s] + target.seconds[t])
             if late >= best:
                 continue
-            value = bound(tables.distance, source, s, target, t) - source.variance[s] - target.variance[t]
-            value = max(value, 0.0) / tables.largest
-            if value <= threshold and SHAPE * value + late < best:
-                best = SHAPE * value + late
-                found.source_pose[0], found.target_pose[0] = source.pose[s], target.pose[t]
+            back = behind and target.beside[t] >= 0
+            p, q = source.pose[s], target.pose[t]
+            v, w = source.variance[s], target.variance[t]
+            d00 = _bound_at(tables.distance, source, s, p, target, t, q) - v - w
+            d10 = d01 = d11 = d00
+            fs = ft = slow = slower = 0.0
+            if on:
+                fs, slow = scale * source.stride[s], latency * source.pace[s]
+                d10 = _bound_at(tables.distance, source, s, source.beside[s], target, t, q)
+                d10 -= source.variance_beside[s] + w
+            if back:
+                ft, slower = scale * target.stride[t], 0.0 if anywhere else latency * target.pace[t]
+                d01 = _bound_at(tables.distance, source, s, p, target, t, target.beside[t])
+                d01 -= v + target.variance_beside[t]
+            if on and back:
+                d11 = _bound_at(tables.distance, source, s, source.beside[s], target, t, target.beside[t])
+                d11 -= source.variance_beside[s] + target.variance_beside[t]
+            elif on:
+                d11 = d10
+            elif back:
+                d11 = d01
+            if late + scale * min(d00, d10, d01, d11) - 0.25 * (fs + ft) >= best:
+                continue
+            # scaled shape = c + ga a + gb b + gab a b + fs a^2 + ft b^2
+            c, ga, gb = scale * d00, scale * (d10 - d00) - fs, scale * (d01 - d00) - ft
+            gab = scale * (d11 - d10 - d01 + d00)
+            a, b = _least_within(ga + slow, gb + slower, gab, fs, ft, on, back)
+            shape = max(c + ga * a + gb * b + gab * a * b + fs * a * a + ft * b * b, 0.0)
+            if shape > SHAPE * threshold:
+                # later, where the motions are nearest
+                a, b = _least_within(ga, gb, gab, fs, ft, on, back)
+                shape = max(c + ga * a + gb * b + gab * a * b + fs * a * a + ft * b * b, 0.0)
+            waits = late + slow * a + slower * b
+            if shape <= SHAPE * threshold and shape + waits < best:
+                best = shape + waits
+                found.source_pose[0], found.target_pose[0] = p + a, q - b
+                if found.source_pose[0] >= tables.source.spread.shape[0]:
+                    found.source_pose[0] -= tables.source.spread.shape[0]
+                if found.target_pose[0] < 0.0:
+                    found.target_pose[0] += tables.target.spread.shape[0]
                 found.source_control[:] = source.control[s]
                 found.target_control[:] = target.control[t]
-                found.cost[0], found.cost[1] = SHAPE * value, late
-                found.cost[2], found.cost[3] = source.seconds[s], target.seconds[t]
+                found.cost[0], found.cost[1] = shape, waits
+                found.cost[2] = source.seconds[s] + (a * source.pace[s] if on else 0.0)
+                found.cost[3] = target.seconds[t] + (b * target.pace[t] if back and not anywhere else 0.0)
     return best
+
+
+@njit(cache=True, nogil=True)
+def _least_within(
+    ga: float, gb: float, gab: float, fs: float, ft: float, on: bool, back: bool
+) -> tuple[float, float]:
+    """Where ga a + gb b + gab a b + fs a^2 + ft b^2, convex, is least, a and b in 0 .. 1 (0 unless on, back)."""
+    determinant = 4.0 * fs * ft - gab * gab
+    if on and back and determinant > 1e-12:
+        a = (gab * gb - 2.0 * ft * ga) / determinant
+        b = (gab * ga - 2.0 * fs * gb) / determinant
+        if 0.0 <= a <= 1.0 and 0.0 <= b <= 1.0:
+            return a, b
+    # else on a side
+    x, y, least = 0.0, 0.0, np.inf
+    for side in range(4):
+        end = float(side % 2)
+        if side < 2:
+            b = end if back else 0.0
+            a = _least_of(ga + gab * b, fs) if on else 0.0
+        else:
+            a = end if on else 0.0
+            b = _least_of(gb + gab * a, ft) if back else 0.0
+        value = ga * a + gb * b + gab * a * b + fs * a * a + ft * b * b
+        if value < least:
+            x, y, least = a, b, value
+    return x, y
+
+
+@njit(cache=True, nogil=True)
+def _least_of(g: float, f: float) -> float:
+    """Where g u + f u^2 is least in 0 .. 1."""
+    if f <= 0.0:
+        return 0.0 if g >= 0.0 else 1.0
+    return min(max(-g / (2.0 * f), 0.0), 1.0)

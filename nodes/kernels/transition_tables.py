@@ -24,8 +24,8 @@ class SpaceTables(NamedTuple):
     quickest: np.ndarray
     # (K, R, R) m^2
     spread: np.ndarray
-    # (K,) greatest variance that a blend of neighbouring references can have
-    loosest: np.ndarray
+    # (K, R, R) m^2: products of the references' steps to the next pose
+    stride: np.ndarray
     control: np.ndarray
 
 
@@ -35,7 +35,7 @@ class EdgeTables(NamedTuple):
     source: SpaceTables
     target: SpaceTables
     distance: np.ndarray
-    # (Ks, Kt): the least of them between any references, for passing over poses that cannot win
+    # (Ks, Kt): nothing is nearer between these poses and the next, for passing over those that cannot win
     least: np.ndarray
     largest: float
 
@@ -58,4 +58,14 @@ def variance(space: SpaceTables, pose: int, reference: np.ndarray, weight: np.nd
     for p in range(len(reference)):
         for q in range(p):
             total += weight[p] * weight[q] * space.spread[pose, reference[p], reference[q]]
+    return total
+
+
+@njit(cache=True, nogil=True)
+def stride(space: SpaceTables, pose: int, reference: np.ndarray, weight: np.ndarray) -> float:
+    """Squared distance of a blend of references from itself at the next pose: sum_pq r_p r_q s_p . s_q."""
+    total = 0.0
+    for p in range(len(reference)):
+        for q in range(len(reference)):
+            total += weight[p] * weight[q] * space.stride[pose, reference[p], reference[q]]
     return total

@@ -28,7 +28,10 @@ def space_tables(graph: ParametricGraph, space: int) -> SpaceTables:
     )
     seconds = np.asarray(graph.seconds)[at_step : at_step + r * k].reshape(r, k)
     places_here = np.array(graph.lattice[at_place : at_place + c * places[space]].reshape(c, -1))
-    spread = np.array(graph.spread[at_spread : at_spread + k * r * r].reshape(k, r, r))
+    spread, stride = (
+        np.array(table[at_spread : at_spread + k * r * r].reshape(k, r, r))
+        for table in (graph.spread, graph.stride)
+    )
     return SpaceTables(
         framed(control, corners),
         places_here,
@@ -37,17 +40,23 @@ def space_tables(graph: ParametricGraph, space: int) -> SpaceTables:
         np.concatenate([np.zeros((r, 1)), np.cumsum(np.tile(seconds, 2), axis=1)], axis=1),
         np.ascontiguousarray(seconds.min(axis=0)),
         spread,
-        _loosest(spread, control, halves),
+        stride,
         np.array(control),
     )
 
 
-def _loosest(spread: np.ndarray, control: np.ndarray, halves: int) -> np.ndarray:
-    """sum_p>q w_p w_q s_pq <= max s_pq (1 - 1/(d + 1)) / 2 over references that are neighbours: (K,)."""
-    d = control.shape[1]
+def _slack(space: SpaceTables) -> np.ndarray:
+    """How much nearer than the references themselves a blend of them and of two poses can be (K,), m^2.
+
+    sum_p>q w_p w_q s_pq <= max s_pq (1 - 1/(d + 1)) / 2 over references that are neighbours, and a (1 - a) |step|^2 <=
+    |step|^2 / 4 between a pose and the next.
+    """
+    control, d = space.control, space.control.shape[1]
     gap = np.abs(control[:, None] - control[None]).max(axis=2)
-    near = gap <= 1.0 / halves + 1e-9
-    return np.asarray(np.where(near, spread, 0.0).max(axis=(1, 2)) * (1.0 - 1.0 / (d + 1)) / 2.0, np.float64)
+    near = gap <= 1.0 / space.halves + 1e-9
+    loosest = np.where(near, space.spread, 0.0).max(axis=(1, 2)) * (1.0 - 1.0 / (d + 1)) / 2.0
+    longest = np.diagonal(space.stride, axis1=1, axis2=2).max(axis=1)
+    return np.asarray(np.maximum(loosest, np.roll(loosest, -1)) + longest / 4.0, np.float64)
 
 
 def edge_tables(graph: ParametricGraph, edge: int) -> EdgeTables:
@@ -61,10 +70,12 @@ def edge_tables(graph: ParametricGraph, edge: int) -> EdgeTables:
         int(graph.poses[source]), int(graph.references[source]), int(graph.poses[target]), int(graph.references[target])
     )  # fmt: skip
     table = np.array(graph.distance[start : start + size[edge]]).reshape(shape)
-    least = np.ascontiguousarray(table.min(axis=(1, 3)), np.float64)
-    return EdgeTables(
-        space_tables(graph, source), space_tables(graph, target), table, least, float(graph.largest)
-    )
+    one, two = space_tables(graph, source), space_tables(graph, target)
+    least = table.min(axis=(1, 3)).astype(np.float64)
+    for axis in (0, 1):
+        least = np.minimum(least, np.roll(least, -1, axis=axis))
+    least -= _slack(one)[:, None] + _slack(two)[None, :]
+    return EdgeTables(one, two, table, np.ascontiguousarray(least), float(graph.largest))
 
 
 def _small_read(graph: ParametricGraph) -> ParametricGraph:

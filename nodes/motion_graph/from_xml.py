@@ -33,7 +33,7 @@ def from_xml(
     latency_weight: Annotated[
         float,
         Param("1", 0.0, 1000.0, "lambda: thousandths of the largest dissimilarity that 1/25 s is worth"),
-    ] = 0.45,
+    ] = 0.38,
 ) -> ParametricGraph:
     """Join those spaces that a file names, in its order, by transitions that are found while the motion plays.
 

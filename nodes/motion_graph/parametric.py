@@ -42,7 +42,7 @@ def parametric(
     latency_weight: Annotated[
         float,
         Param("1", 0.0, 1000.0, "lambda: thousandths of the largest dissimilarity that 1/25 s is worth"),
-    ] = 0.45,
+    ] = 0.38,
     depth: Annotated[int, Param("1", 1, 20, "steps of the trellis")] = 10,
     step: Annotated[
         float, Param("1", 0.01, 1.0, "of the trellis, as a share of a run and of a control's range")
@@ -153,6 +153,12 @@ def _graph(
         halves=np.array(2**subdivisions, np.int32),
         seconds=np.concatenate([references.seconds.ravel() for references in made]),
         spread=np.concatenate([rows.ravel() for rows in spread]),
+        stride=np.concatenate(
+            [
+                _strides(references.features, round_).ravel()
+                for references, round_ in zip(made, cyclic, strict=True)
+            ]
+        ),
         source=source,
         target=target,
         best=np.array([table.min() / largest for table in tables.values()], np.float64),
@@ -167,6 +173,14 @@ def _graph(
         step=zero,
         threshold=zero,
     )
+
+
+def _strides(features: np.ndarray, cyclic: bool) -> np.ndarray:
+    """Products of the steps from pose to pose (K, R, R) of features (K, R, F); 0 at the end unless cyclic."""
+    steps = np.roll(features, -1, axis=0) - features
+    if not cyclic:
+        steps[-1] = 0.0
+    return np.asarray(steps @ steps.transpose(0, 2, 1), np.float32)
 
 
 def _fixed(

@@ -100,6 +100,8 @@ class ParametricGraph(NamedTuple):
     seconds: Annotated[np.ndarray, Axes("step", dtype="float64", unit="s")]
     # squared distance of references of one space at one pose, flat (pose, reference, reference) per space
     spread: Annotated[np.ndarray, Axes("spread", unit="m2")]
+    # products of the steps of references to the next pose, s_p . s_q, flat (pose, reference, reference) per space
+    stride: Annotated[np.ndarray, Axes("spread", unit="m2")]
     # edges: from which space to which
     source: Annotated[np.ndarray, Axes("edge", dtype="int32")]
     target: Annotated[np.ndarray, Axes("edge", dtype="int32")]

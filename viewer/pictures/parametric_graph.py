@@ -97,7 +97,7 @@ def _trellis(axis: Any, product: ParametricGraph, tables: EdgeTables, source: st
             linestyle=":",
         )
         said = (
-            f"leave pose {int(found.source_pose[0])}, enter pose {int(found.target_pose[0])}: dissimilarity "
+            f"leave pose {found.source_pose[0]:.1f}, enter pose {found.target_pose[0]:.1f}: dissimilarity "
             f"{found.cost[0] / 1000:.3f}, {total:.2f} s"
         )
     else:

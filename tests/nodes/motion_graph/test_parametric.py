@@ -3,6 +3,7 @@ import pytest
 
 from reperform.nodes.kernels.fixed_transitions import fixed_transition
 from reperform.nodes.kernels.ground_plane import Placement, apply
+from reperform.nodes.kernels.reference_motions import reference_motions
 from reperform.nodes.kernels.transition_search import (
     best_transition,
     dissimilarities,
@@ -87,14 +88,20 @@ def test_the_bound_holds_and_the_variance_makes_it_exact(graph, edge):
         assert exact[s, t] == pytest.approx(true, abs=2e-5)
 
 
-def every_state(side: SpaceTables, pose: int, control: np.ndarray, direction: int, depth: int):
-    """All states within a depth, at every pose: (pose, control, seconds) one by one."""
+def every_state(
+    side: SpaceTables, features: np.ndarray, pose: int, control: np.ndarray, direction: int, depth: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """All states within a depth, at every quarter of every pose: features (S, F), seconds (S,).
+
+    features (K, R, F): of references, blended as weights say, and linear from pose to pose.
+    """
     poses, room, rows = side.spread.shape[0], new_trellis(side, 40), []
     step_seconds = np.diff(side.clock, axis=1)
-    for moment in range(round(depth * 0.1 * poses) + 1):
-        at = pose + direction * moment
-        if not side.cyclic and not 0 <= at < poses:
-            break
+    last = round(depth * 0.1 * poses)
+    if not side.cyclic:
+        last = min(last, poses - 1 - pose if direction > 0 else pose)
+    for moment in range(last + 1):
+        at, on = pose + direction * moment, pose + direction * (moment + 1)
         passed = np.arange(min(pose, at), max(pose, at)) % poses
         changes = int(moment / (0.1 * poses) + 1e-9)
         for axis in range(len(control)):
@@ -102,34 +109,61 @@ def every_state(side: SpaceTables, pose: int, control: np.ndarray, direction: in
                 u = control.copy()
                 u[axis] = min(max(u[axis] + 0.1 * j, 0), 1)
                 fill_trellis(side, at % poses, u, 1, 0, 0.1, room)
-                seconds = room.weight[0] @ step_seconds[room.reference[0]][:, passed].sum(axis=1)
-                rows.append((at % poses, u, seconds))
-    return rows
+                reference, weight = room.reference[0].copy(), room.weight[0].copy()
+                seconds = weight @ step_seconds[reference][:, passed].sum(axis=1)
+                here, there = (weight @ features[k % poses, reference] for k in (at, on))
+                pace = weight @ step_seconds[reference, min(at, on) % poses]
+                for part in (0.0, 0.25, 0.5, 0.75) if moment < last else (0.0,):
+                    rows.append((here + part * (there - here), seconds + part * pace))
+    return np.array([row for row, _ in rows]), np.array([seconds for _, seconds in rows])
 
 
-def test_the_search_finds_the_cheapest_of_all_states(graph):
+def state(side: SpaceTables, features: np.ndarray, pose: float, control: np.ndarray) -> np.ndarray:
+    """Features (F,) at a pose between two."""
+    poses, room = side.spread.shape[0], new_trellis(side, 40)
+    before = int(np.floor(pose))
+    fill_trellis(side, before % poses, control, 1, 0, 0.1, room)
+    here, there = (room.weight[0] @ features[k % poses, room.reference[0]] for k in (before, before + 1))
+    return here + (pose - before) * (there - here)
+
+
+def test_the_search_finds_the_cheapest_of_all_states(graph, spaces):
+    """Against features of references themselves: no tables, no bound, no polynomial."""
+    features = {}
+    for name, made in spaces.items():
+        fields = (made.vertices, made.motion, made.seconds, bool(made.cyclic), made.faces, made.cells)
+        features[name] = reference_motions(*fields, 1, 1.0, False).features.astype(float)
+    between = 0
     for edge, weight in (("walk>hop", 5.0), ("walk>hop", 0.3), ("turn>hop", 1.0), ("hop>walk", 1.0)):
+        one, two = (features[name] for name in edge.split(">"))
         tables = edge_tables(graph, find_edge(graph, *edge.split(">")))
         u, v = (
             np.full(side.control.shape[1], c) for side, c in ((tables.source, 0.37), (tables.target, 0.81))
         )
         depth, start, end = 3, 9, 20
         x, y = new_trellis(tables.source, depth), new_trellis(tables.target, depth)
-        found, one = new_found(tables), np.zeros((1, 1))
+        found = new_found(tables)
         room = (tables, start, u, end, v, depth, 0.1, weight)
         assert best_transition(*room, 1.0, x, y, found)
-        cost, shapes = found.cost[0] + found.cost[1], []
-        costs = []
-        states = every_state(tables.target, end, v, -1, depth)
-        for pose, control, seconds in every_state(tables.source, start, u, 1, depth):
-            fill_trellis(tables.source, pose, control, 1, 0, 0.1, x)
-            for other, target_control, more in states:
-                fill_trellis(tables.target, other, target_control, 1, 0, 0.1, y)
-                dissimilarities(tables, x, y, True, one)
-                shapes.append(float(one[0, 0]))
-                costs.append(1000 * shapes[-1] + weight * 25 * (seconds + more))
-        assert cost == pytest.approx(min(costs), rel=1e-6)
-        assert not best_transition(*room, 0.99 * min(shapes), x, y, found)
+        here = state(tables.source, one, found.source_pose[0], found.source_control)
+        there = state(tables.target, two, found.target_pose[0], found.target_control)
+        scale = 1000 / tables.largest
+        assert found.cost[0] == pytest.approx(scale * ((here - there) ** 2).sum(), rel=1e-3)
+        assert found.cost[1] == pytest.approx(weight * 25 * (found.cost[2] + found.cost[3]))
+        between += found.source_pose[0] % 1 > 0 or found.target_pose[0] % 1 > 0
+        (a, waited), (b, passed) = (
+            every_state(tables.source, one, start, u, 1, depth),
+            every_state(tables.target, two, end, v, -1, depth),
+        )
+        square = (a**2).sum(axis=1)[:, None] + (b**2).sum(axis=1) - 2 * a @ b.T
+        costs = scale * square + weight * 25 * (waited[:, None] + passed)
+        cost = found.cost[0] + found.cost[1]
+        assert cost <= costs.min() * (1 + 1e-4)
+        # a quarter of a step is near enough to tell
+        strides = [np.linalg.norm(np.diff(f, axis=0), axis=-1).max() for f in (one, two)]
+        assert cost > costs.min() - scale * sum(strides) ** 2 / 64
+        assert not best_transition(*room, 0.9 * square.min() / tables.largest, x, y, found)
+    assert between >= 2
 
 
 def test_a_trellis_moves_on_in_time_and_little_by_little_in_controls(graph):
