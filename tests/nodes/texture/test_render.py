@@ -5,6 +5,8 @@ from reperform.nodes.kernels.ground_plane import Placement, apply
 from reperform.nodes.kernels.picture_error import psnr
 from reperform.nodes.products.cameras import CameraPath
 from reperform.nodes.products.motion import Animation, Provenance
+from reperform.nodes.products.played import Played
+from reperform.nodes.synthesis.played_animation import played_animation
 from reperform.nodes.texture.orbit import circle
 from reperform.nodes.texture.render import render, sources
 
@@ -74,6 +76,31 @@ def test_a_new_pose_between_two_captured_ones_is_near_the_truth(scene, alignment
     view = camera(vertices.mean(axis=0), 95)
     film = render(animation(scene, vertices, provenance(0.6)), view, *dataset(scene), alignment=alignment)
     truth, alpha = scene.truth(vertices, (view.matrix, view.rotation, view.translation), 260, 220, (0, 0, 0))
+    assert psnr(film.images, truth, alpha == 255) > 32
+
+
+def test_what_a_character_plays_looks_as_its_sources_were_filmed(scene):
+    """Two takes blended between whole frames, anywhere on the ground: from the record of the play alone."""
+    place = Placement(-1.3, np.array([2.0, 0.7]))
+    vertices = apply(0.6 * scene.mesh.vertices[0] + 0.4 * scene.mesh.vertices[1].astype(np.float64), place)
+    empty = {name: np.zeros(0) for name in Played._fields}
+    record = {
+        "mesh": scene.mesh._replace(vertices=vertices[None].astype(np.float32)),
+        "takes": TAKES,
+        "take": np.int32([[1, 0, 0]]),
+        "source_frame": np.array([[0.8, 0.1, 0.0]]),
+        "weight": np.array([[0.38, 0.57, 0.05]]),
+    }
+    meshes, footage, mattes, cameras = dataset(scene)
+    made = played_animation(Played(**empty | record), meshes)
+    one = Animation(
+        scene.mesh._replace(vertices=made.mesh.vertices[0]),
+        Provenance(TAKES, *(x[0] for x in made.provenance[1:])),
+    )
+    view = camera(vertices.mean(axis=0), 20)
+    film = render(one, view, meshes, footage, mattes, cameras)
+    truth, alpha = scene.truth(vertices, (view.matrix, view.rotation, view.translation), 260, 220, (0, 0, 0))
+    assert (alpha == 255).sum() > 3000
     assert psnr(film.images, truth, alpha == 255) > 32
 
 
