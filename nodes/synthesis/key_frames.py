@@ -37,6 +37,8 @@ from reperform.nodes.synthesis.key_frame_targets import (
 _WHO = "synthesis.key_frames"
 # Walks kept of each place and number of steps where position or heading count.
 _WIDTH = 100
+# Labels that the proof may take: filling the table takes longer.
+_EFFORT = 2_000_000
 
 
 @node(over="dataset", memory=1.5)
@@ -105,7 +107,7 @@ def key_frames(
     moves, spots = moves_between(graph, meshes, keys, _WHO)
     horizon = int(np.ceil((longest if duration is None else duration + duration_tolerance) * rate))
     reach = np.inf if distance is None else distance + distance_tolerance
-    answer = PreparedSearch.fill(moves, horizon, reach, distance_weight).ask(asked)
+    answer = PreparedSearch.fill(moves, horizon, reach, distance_weight).ask(asked, _EFFORT)
     walk = answer.walk
     if walk is not None and (position or heading is not None):
         goal = _goal(graph, meshes, spots, position, heading, (position_weight, heading_weight))
