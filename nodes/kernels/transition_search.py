@@ -31,7 +31,7 @@ class Trellis(NamedTuple):
     reference: np.ndarray
     weight: np.ndarray
     variance: np.ndarray
-    # the pose next to it, on in the trellis' direction (-1: none): variance, squared step and seconds to there
+    # of best_transition: the next pose in the trellis' direction (-1: none), variance there, squared step and seconds
     beside: np.ndarray
     variance_beside: np.ndarray
     stride: np.ndarray
@@ -161,16 +161,23 @@ def _add(space: SpaceTables, first: int, at: int, direction: int, out: Trellis) 
     out.pose[row], out.seconds[row] = pose, seconds
     out.control[row] = out.start
     out.variance[row] = variance(space, pose, reference, weight)
-    out.beside[row] = _beside(space, pose, direction)
-    if out.beside[row] >= 0:
-        begin = pose if direction > 0 else out.beside[row]
-        out.variance_beside[row] = variance(space, out.beside[row], reference, weight)
-        out.stride[row] = stride(space, begin, reference, weight)
-        pace = 0.0
-        for k in range(len(reference)):
-            pace += weight[k] * (space.clock[reference[k], begin + 1] - space.clock[reference[k], begin])
-        out.pace[row] = pace
     out.size[0] = row + 1
+
+
+@njit(cache=True, nogil=True)
+def _look_on(space: SpaceTables, direction: int, out: Trellis, row: int) -> None:
+    """Note what lies beside a state."""
+    reference, weight, pose = out.reference[row], out.weight[row], out.pose[row]
+    out.beside[row] = _beside(space, pose, direction)
+    if out.beside[row] < 0:
+        return
+    begin = pose if direction > 0 else out.beside[row]
+    out.variance_beside[row] = variance(space, out.beside[row], reference, weight)
+    out.stride[row] = stride(space, begin, reference, weight)
+    pace = 0.0
+    for k in range(len(reference)):
+        pace += weight[k] * (space.clock[reference[k], begin + 1] - space.clock[reference[k], begin])
+    out.pace[row] = pace
 
 
 @njit(cache=True, nogil=True)
@@ -186,14 +193,7 @@ def _beside(space: SpaceTables, pose: int, direction: int) -> int:
 @njit(cache=True, nogil=True)
 def bound(distance: np.ndarray, source: Trellis, s: int, target: Trellis, t: int) -> float:
     """Upper bound of a squared distance: sum_pq r_p r_q D_pq (004 eq 4.5 for the dissimilarity)."""
-    return _bound_at(distance, source, s, source.pose[s], target, t, target.pose[t])
-
-
-@njit(cache=True, nogil=True)
-def _bound_at(
-    distance: np.ndarray, source: Trellis, s: int, i: int, target: Trellis, t: int, j: int
-) -> float:
-    total = 0.0
+    total, i, j = 0.0, source.pose[s], target.pose[t]
     for p in range(source.reference.shape[1]):
         row, part = source.reference[s, p], 0.0
         for q in range(target.reference.shape[1]):
@@ -321,6 +321,8 @@ def _at_moment(
     out.begin[slot] = out.size[0]
     _lay_out(space, first, first + direction * moment, direction, control, changes, step, out)
     out.end[slot] = out.size[0]
+    for row in range(out.begin[slot], out.end[slot]):
+        _look_on(space, direction, out, row)
 
 
 @njit(cache=True, nogil=True)
@@ -385,6 +387,20 @@ def _cheapest(
                 found.cost[2] = source.seconds[s] + (a * source.pace[s] if on else 0.0)
                 found.cost[3] = target.seconds[t] + (b * target.pace[t] if back and not anywhere else 0.0)
     return best
+
+
+@njit(cache=True, nogil=True)
+def _bound_at(
+    distance: np.ndarray, source: Trellis, s: int, i: int, target: Trellis, t: int, j: int
+) -> float:
+    """As `bound`, at any two poses; apart from it, since a call within it would cost as much as the sum."""
+    total = 0.0
+    for p in range(source.reference.shape[1]):
+        row, part = source.reference[s, p], 0.0
+        for q in range(target.reference.shape[1]):
+            part += target.weight[t, q] * distance[i, row, j, target.reference[t, q]]
+        total += source.weight[s, p] * part
+    return total
 
 
 @njit(cache=True, nogil=True)
