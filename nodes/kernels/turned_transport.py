@@ -176,13 +176,13 @@ def turned_transport(
 
 
 @njit(cache=True, nogil=True)
-def exact_transport(
-    takes: tuple[Signatures, Signatures], cells: tuple[Signatures, Signatures], turns: int, same: bool
+def exact_distances(
+    takes: tuple[Signatures, Signatures], cells: tuple[Signatures, Signatures], turns: int, pairs: np.ndarray
 ) -> np.ndarray:
-    """As turned_transport, of all points of a and `turned` b and proved least; `cells` are both by cells."""
-    rows, columns = len(takes[0].first) - 1, (len(takes[1].first) - 1) // turns
-    distance = np.zeros((rows, columns))
-    for i in range(rows):
-        for j in range(i + 1 if same else 0, columns):
-            distance[i, j] = least_distance(takes[0], i, takes[1], j, cells, turns)[0]
+    """Distances (P,) of pairs (P, 2) of a frame of a and one of `turned` b, of all points and proved least over the
+    turns; `cells` are both by cells.
+    """
+    distance = np.empty(len(pairs))
+    for k in range(len(pairs)):
+        distance[k] = least_distance(takes[0], pairs[k, 0], takes[1], pairs[k, 1], cells, turns)[0]
     return distance

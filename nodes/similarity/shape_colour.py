@@ -9,7 +9,7 @@ import numpy as np
 from reperform.nodes.declaration import Param, node
 from reperform.nodes.kernels.signatures import Signatures, common_planes, merged, signatures
 from reperform.nodes.kernels.temporal_filter import filter_diagonals
-from reperform.nodes.kernels.turned_transport import exact_transport, turned, turned_transport
+from reperform.nodes.kernels.turned_transport import exact_distances, turned, turned_transport
 from reperform.nodes.product import Pair
 from reperform.nodes.products.motion import Dissimilarity
 from reperform.nodes.products.shape_colour import ShapeColourHistograms
@@ -21,20 +21,21 @@ _CLOSER = 0.2
 # cells from which distances of all bins are bounded, where these are solved
 _BOUNDING = 160
 
+ColourWeight = Annotated[
+    float, Param("m", 0.0, 100.0, "how far apart the two ends of a colour channel count")
+]
+Turns = Annotated[int, Param("1", 1, 360, "equal turns about the vertical among which the best counts")]
+
 
 @node(over="pair", memory=0.5)
 def shape_colour(
     histograms: Pair[ShapeColourHistograms],
     *,
-    colour_weight: Annotated[
-        float, Param("m", 0.0, 100.0, "how far apart the two ends of a colour channel count")
-    ] = 1.0,
+    colour_weight: ColourWeight = 1.0,
     clusters: Annotated[
         int, Param("1", 0, 2000, "points that stand for a frame's filled bins; 0: all bins, exactly")
     ] = 256,
-    turns: Annotated[
-        int, Param("1", 1, 360, "equal turns about the vertical among which the best counts")
-    ] = 20,
+    turns: Turns = 20,
     margin: Annotated[
         float, Param("1", 1.0, 100.0, "turns are tried whose rough distance is under this times the least")
     ] = 1.15,
@@ -68,18 +69,34 @@ def shape_colour(
             f"{float(a.reach):g} and {np.asarray(b.bins)}, {float(b.reach):g}: make both with the same parameters "
             "of similarity.shape_colour_histogram"
         )
-    same = _equal(a, b)
-    first, second = (shape_colour_signatures(take, colour_weight) for take in histograms)
-    every = turned(second, turns)
+    same = equal_takes(a, b)
     if clusters:
+        first, second = (shape_colour_signatures(take, colour_weight) for take in histograms)
+        every = turned(second, turns)
         rough, middle, fine = (_level(first, every, count) for count in (_ROUGH, _MIDDLE, clusters))
         margins = (margin, 1 + _CLOSER * (margin - 1))
         distance = turned_transport(rough, middle, fine, turns, margins, same)
     else:
-        distance = exact_transport((first, every), _level(first, every, _BOUNDING), turns, same)
+        rows, columns = len(a.share), len(b.share)
+        pairs = np.stack(
+            np.triu_indices(rows, 1) if same else np.divmod(np.arange(rows * columns), columns), axis=1
+        )
+        distance = np.zeros((rows, columns))
+        distance[tuple(pairs.T)] = exact_distances(*all_bins(a, b, colour_weight, turns), turns, pairs)
     if same:
         distance += distance.T
     return Dissimilarity(filter_diagonals(distance, filter_frames).astype(np.float32))
+
+
+def all_bins(
+    a: ShapeColourHistograms, b: ShapeColourHistograms, colour_weight: float, turns: int
+) -> tuple[tuple[Signatures, Signatures], tuple[Signatures, Signatures]]:
+    """All filled bins of two takes, the second at every turn, and both by cells from which distances are bounded."""
+    first, every = (
+        shape_colour_signatures(a, colour_weight),
+        turned(shape_colour_signatures(b, colour_weight), turns),
+    )
+    return (first, every), _level(first, every, _BOUNDING)
 
 
 def _level(take: Signatures, every: Signatures, count: int) -> tuple[Signatures, Signatures]:
@@ -97,7 +114,8 @@ def shape_colour_signatures(histograms: ShapeColourHistograms, colour_weight: fl
     return signatures(list(histograms.share), points)
 
 
-def _equal(a: ShapeColourHistograms, b: ShapeColourHistograms) -> bool:
+def equal_takes(a: ShapeColourHistograms, b: ShapeColourHistograms) -> bool:
+    """Whether both are one take."""
     return len(a.share) == len(b.share) and all(
         np.array_equal(x, y)
         for field in ("bin", "share", "point", "colour")
