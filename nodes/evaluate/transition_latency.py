@@ -10,7 +10,7 @@ import numpy as np
 
 from reperform.nodes.declaration import Param, node
 from reperform.nodes.kernels.fixed_transitions import fixed_transition
-from reperform.nodes.kernels.transition_search import best_transition, new_found, new_trellis
+from reperform.nodes.kernels.transition_search import best_transition, new_found
 from reperform.nodes.kernels.transition_tables import EdgeTables
 from reperform.nodes.motion_graph.edge_tables import edge_tables, find_edge
 from reperform.nodes.products.measures import Measures
@@ -88,8 +88,7 @@ def _methods(graph: ParametricGraph, edge: int, tables: EdgeTables) -> dict[str,
         np.array(np.asarray(field)[mine])
         for field in (graph.fixed_pose, graph.fixed_reference, graph.fixed_cost)
     )
-    source, target = (new_trellis(side, DEPTHS[-1]) for side in (tables.source, tables.target))
-    found, out = new_found(tables), np.zeros(4)
+    found, out = new_found(tables, DEPTHS[-1], step), np.zeros(4)
 
     def fixed(count: int) -> Method:
         first = poses[:count].copy(), references[:count].copy(), costs[:count].copy()
@@ -101,7 +100,7 @@ def _methods(graph: ParametricGraph, edge: int, tables: EdgeTables) -> dict[str,
 
     def online(depth: int) -> Method:
         def method(state: State) -> np.ndarray | None:
-            able = best_transition(tables, *state, depth, step, weight, 1.0, source, target, found)
+            able = best_transition(tables, *state, depth, step, weight, 1.0, found)
             return found.cost.copy() if able else None
 
         return method

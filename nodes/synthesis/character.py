@@ -18,7 +18,7 @@ from reperform.nodes.kernels.play_space import (
     seconds_between,
     soles_of,
 )  # fmt: skip
-from reperform.nodes.kernels.transition_search import best_transition, new_found, new_trellis
+from reperform.nodes.kernels.transition_search import best_transition, new_found
 from reperform.nodes.synthesis.cell_corrections import add_corrections
 from reperform.nodes.synthesis.character_data import CharacterData
 
@@ -98,14 +98,7 @@ class Character:
         self._halved = [np.empty_like(scratch) for scratch in self._scratch]
         self._wanted = [np.zeros(len(names)) for names in data.parameters]
         depth, step, *_ = data.search
-        self._trellis = [
-            (
-                new_trellis(edge.source, depth, step),
-                new_trellis(edge.target, depth, step),
-                new_found(edge, depth, step),
-            )
-            for edge in data.edges
-        ]
+        self._found = [new_found(edge, depth, step) for edge in data.edges]
         start = data.rest if space is None else space
         self.now = self._layers[start]
         self.old = self._old_layers[start]
@@ -215,7 +208,7 @@ class Character:
             self._retry = _RETRY
         if self._plan < 0.0:
             return
-        found = self._trellis[self._edge][2]
+        found = self._found[self._edge]
         self._plan -= dt
         # controls arrive where the transition wants them when it begins
         share = min(1.0, dt / max(self._plan + dt, dt))
@@ -234,7 +227,7 @@ class Character:
             edge = int(loop[0] if len(loop) else data.routes[self.space, data.rest])
         if edge < 0:
             return
-        tables, (source, target, found) = data.edges[edge], self._trellis[edge]
+        tables, found = data.edges[edge], self._found[edge]
         depth, step, latency_weight, threshold = data.search
         to = int(data.target[edge])
         if to == goal.space:
@@ -246,8 +239,7 @@ class Character:
         # a motion that is not cyclic is entered near its beginning
         enter = -1.0 if data.spaces[to].cyclic else round(_ENTER * data.spaces[to].poses)
         ok = best_transition(
-            tables, now.pose[0], now.control, enter, wanted, depth, step, latency_weight, threshold,
-            source, target, found,
+            tables, now.pose[0], now.control, enter, wanted, depth, step, latency_weight, threshold, found
         )  # fmt: skip
         if ok:
             space = data.spaces[self.space]
@@ -263,7 +255,7 @@ class Character:
 
     def _begin(self) -> None:
         """Start blending into the target of the planned transition."""
-        found, to = self._trellis[self._edge][2], int(self.data.target[self._edge])
+        found, to = self._found[self._edge], int(self.data.target[self._edge])
         self.old, self._layers[self.space] = self.now, self._old_layers[self.space]
         self._old_layers[self.space] = self.old
         self.now = self._layers[to]

@@ -77,7 +77,7 @@ def _trellis(axis: Any, product: ParametricGraph, tables: EdgeTables, source: st
     )
     goal = int(0.54 * tables.target.spread.shape[0])
     found = new_found(tables, depth, step)
-    able = best_transition(tables, 1, start, goal, end, depth, step, weight, threshold, a, b, found)
+    able = best_transition(tables, 1, start, goal, end, depth, step, weight, threshold, found)
     fill_trellis(tables.source, 1, start, 1, depth, step, a)
     fill_trellis(tables.target, goal, end, -1, depth, step, b)
     total = float(found.cost[2] + found.cost[3]) if able else float(a.seconds.max() + b.seconds.max())

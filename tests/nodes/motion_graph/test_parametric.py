@@ -1,3 +1,5 @@
+from typing import NamedTuple
+
 import numpy as np
 import pytest
 
@@ -141,10 +143,9 @@ def test_the_search_finds_the_cheapest_of_all_states(graph, spaces):
             np.full(side.control.shape[1], c) for side, c in ((tables.source, 0.37), (tables.target, 0.81))
         )
         depth, start, end = 3, 9, 20
-        x, y = new_trellis(tables.source, depth), new_trellis(tables.target, depth)
         found = new_found(tables)
         room = (tables, start, u, end, v, depth, 0.1, weight)
-        assert best_transition(*room, 1.0, x, y, found)
+        assert best_transition(*room, 1.0, found)
         here = state(tables.source, one, found.source_pose[0], found.source_control)
         there = state(tables.target, two, found.target_pose[0], found.target_control)
         scale = 1000 / tables.largest
@@ -162,8 +163,115 @@ def test_the_search_finds_the_cheapest_of_all_states(graph, spaces):
         # a quarter of a step is near enough to tell
         strides = [np.linalg.norm(np.diff(f, axis=0), axis=-1).max() for f in (one, two)]
         assert cost > costs.min() - scale * sum(strides) ** 2 / 64
-        assert not best_transition(*room, 0.9 * square.min() / tables.largest, x, y, found)
+        assert not best_transition(*room, 0.9 * square.min() / tables.largest, found)
     assert between >= 2
+
+
+class Moment(NamedTuple):
+    """States that differ in their controls alone."""
+
+    pose: int
+    beside: int
+    weight: np.ndarray
+    control: np.ndarray
+    seconds: np.ndarray
+    pace: np.ndarray
+
+
+def moments(
+    side: SpaceTables, pose: int, control: np.ndarray, direction: int, depth: int, any_pose: bool = False
+) -> list[Moment]:
+    """All states within a depth, one at a time, with weights of all references."""
+    poses, room, out = side.spread.shape[0], new_trellis(side, 40), []
+    step_seconds = np.diff(side.clock, axis=1)[:, :poses]
+    last = poses - 1 if any_pose else round(depth * 0.1 * poses)
+    if not side.cyclic:
+        last = min(last, poses - 1 - pose if direction > 0 else pose)
+    for k in range(last + 1):
+        at, on = pose + direction * k, pose + direction * (k + (k < last or (any_pose and side.cyclic)))
+        changes = 0 if any_pose else int(k / (0.1 * poses) + 1e-9)
+        weights, controls = [], []
+        for axis in range(len(control)):
+            for j in range(-changes, changes + 1):
+                u = control.copy()
+                u[axis] = min(max(u[axis] + 0.1 * j, 0), 1)
+                fill_trellis(side, at % poses, u, 1, 0, 0.1, room)
+                weight = np.zeros(len(side.control))
+                np.add.at(weight, room.reference[0], room.weight[0])
+                weights.append(weight)
+                controls.append(u)
+        passed = np.arange(min(pose, at), max(pose, at)) % poses
+        seconds = np.array(weights) @ step_seconds
+        counted = 0.0 if any_pose else 1.0
+        out.append(
+            Moment(
+                at % poses, on % poses, np.array(weights), np.array(controls),
+                counted * seconds[:, passed].sum(axis=1), counted * (on != at) * seconds[:, min(at, on) % poses],
+            )
+        )  # fmt: skip
+    return out
+
+
+def costs_between(
+    tables: EdgeTables, one: Moment, two: Moment, part: np.ndarray, share: np.ndarray, weight: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """E_S and lambda E_L, (S, T, A, B): part (A,) of the way to the next pose of the source, share (B,) of the target's.
+
+    The squared distance of two weighted sums of points, their weights of sum 1, from the points' distances alone.
+    """
+    steps = [np.stack([1 - a, a], 1) for a in (part, share)]
+    x = np.einsum("sr,ap->sapr", one.weight, steps[0])
+    y = np.einsum("tr,bq->tbqr", two.weight, steps[1])
+    table = tables.distance[[one.pose, one.beside]][:, :, [two.pose, two.beside]].astype(float)
+    total = np.einsum("sapr,prqk,tbqk->stab", x, table, y)
+    for side, moment, along, axes in (
+        (tables.source, one, part, (1, 3)),
+        (tables.target, two, share, (0, 2)),
+    ):
+        spread = side.spread[[moment.pose, moment.beside]].astype(float)
+        # a blend of both poses: the mean spread within each, and what lies between them
+        within = 0.5 * np.einsum("sr,prk,sk->sp", moment.weight, spread, moment.weight)
+        first = moment.pose if moment.beside == (moment.pose + 1) % len(side.spread) else moment.beside
+        square = np.einsum("sr,rk,sk->s", moment.weight, side.stride[first].astype(float), moment.weight)
+        square *= moment.pose != moment.beside
+        own = within @ np.stack([1 - along, along]) + square[:, None] * along * (1 - along)
+        total -= np.expand_dims(own, axes)
+    waits = (one.seconds[:, None] + part * one.pace[:, None])[:, None, :, None]
+    waits = waits + (two.seconds[:, None] + share * two.pace[:, None])[None, :, None, :]
+    return 1000 / tables.largest * np.maximum(total, 0), weight * 25 * waits
+
+
+@pytest.mark.parametrize("edge", ["walk>hop", "hop>walk", "turn>hop", "walk>turn"])
+def test_the_search_is_a_plain_comparison_of_all_states(graph, edge):
+    """Every pair of states and of parts of steps in turn, from the tables alone: no bound, no order, nothing shared."""
+    tables = edge_tables(graph, find_edge(graph, *edge.split(">")))
+    rng, depth, found = np.random.default_rng(2), 3, new_found(tables)
+    parts = np.linspace(0, 1, 5)
+    for weight, any_pose in ((5.0, False), (0.3, False), (1.0, True)):
+        (start, u), (end, v) = (
+            (int(rng.integers(8, side.spread.shape[0])), rng.random(side.control.shape[1]))
+            for side in (tables.source, tables.target)
+        )
+        goal = -1 if any_pose else end
+        assert best_transition(tables, start, u, goal, v, depth, 0.1, weight, 1.0, found)
+        ones = moments(tables.source, start, u, 1, depth)
+        last = tables.target.spread.shape[0] - 1
+        twos = moments(tables.target, last if any_pose else end, v, -1, depth, any_pose)
+        least = min(
+            sum(costs_between(tables, one, two, parts, parts, weight)).min() for one in ones for two in twos
+        )
+        assert found.cost[:2].sum() <= least * (1 + 1e-6)
+        # what is found is one of them
+        leave, enter = found.source_pose[0], found.target_pose[0]
+        one = next(m for m in ones if m.pose == int(leave))
+        two = next(m for m in twos if m.pose == int(np.ceil(enter)) % (last + 1))
+        s = np.flatnonzero((np.abs(one.control - found.source_control) < 1e-12).all(axis=1))[0]
+        t = np.flatnonzero((np.abs(two.control - found.target_control) < 1e-12).all(axis=1))[0]
+        shape, waits = costs_between(
+            tables, one, two, np.array([leave % 1]), np.array([np.ceil(enter) - enter]), weight
+        )
+        assert found.cost[0] == pytest.approx(shape[s, t, 0, 0], rel=1e-6)
+        assert found.cost[1] == pytest.approx(waits[s, t, 0, 0], rel=1e-6)
 
 
 def test_a_trellis_moves_on_in_time_and_little_by_little_in_controls(graph):
@@ -184,10 +292,8 @@ def test_a_trellis_moves_on_in_time_and_little_by_little_in_controls(graph):
 
 def test_any_pose_of_the_target_will_do_if_none_is_asked(graph):
     tables = edge_tables(graph, find_edge(graph, "hop", "walk"))
-    a, b, found = new_trellis(tables.source, 10), new_trellis(tables.target, 10), new_found(tables)
-    assert best_transition(
-        tables, 30.0, np.array([0.5]), -1.0, np.array([0.2]), 10, 0.1, 5.0, 1.0, a, b, found
-    )
+    found = new_found(tables)
+    assert best_transition(tables, 30.0, np.array([0.5]), -1.0, np.array([0.2]), 10, 0.1, 5.0, 1.0, found)
     assert found.cost[3] == 0
     assert found.target_control[0] == pytest.approx(0.2)
 
