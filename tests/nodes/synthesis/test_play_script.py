@@ -101,7 +101,7 @@ def test_the_loop_allocates_nothing_that_stays(playable):
         Command(s, data.values(s, {}), n) for n, s in enumerate((data.space("walk"), data.space("jump")))
     ]
     sizes = []
-    for round in range(4):
+    for round in range(7):
         for k in range(300):
             character.step(0.02, commands[k // 100 % 2])
         gc.collect()
@@ -112,9 +112,9 @@ def test_the_loop_allocates_nothing_that_stays(playable):
     character.step(0.02, commands[1])
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
-    # the mesh of one frame is 8 kB
-    assert sizes[3] - sizes[2] < 8000
-    assert peak - sizes[3] < 16000
+    # the mesh of one frame is 8 kB; what stays does so in every round, what Python keeps for later only in some
+    assert np.diff(sizes).min() < 8000
+    assert peak - sizes[-1] < 16000
 
 
 def test_it_never_dies_under_random_commands(playable):
