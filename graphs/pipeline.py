@@ -33,6 +33,14 @@ class Step:
     about: str = ""
     # what the step came from before a sweep multiplied it
     base: str = ""
+    # the takes that the definition holds it to; none: all that its inputs have
+    held: tuple[str, ...] = ()
+
+    def sees(self, takes: Sequence[str]) -> tuple[str, ...]:
+        """Those of some takes, or pairs of takes, that a port for many of them sees."""
+        if not self.held:
+            return tuple(takes)
+        return tuple(label for label in takes if all(take in self.held for take in label.split("/")))
 
     @property
     def units(self) -> tuple[str, ...]:
@@ -149,6 +157,7 @@ class _Builder:
         return Step(
             self.name, node, inputs, params, domain, takes,
             self.document.place("steps", self.base), str(self.body.get("about") or ""), self.base,
+            () if self.body.get("takes") is None else self._own_takes(self.body["takes"]),
         )  # fmt: skip
 
     def _error(self, message: str, *keys: str | int) -> DefinitionError:

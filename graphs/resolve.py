@@ -54,9 +54,9 @@ class Resolver:
                 (take, source.name, take if source.domain == "take" else "") for take in label.split("/", 1)
             ]
         if port.many == "dataset":
-            takes = source.takes if source.domain == "take" else step.takes
+            takes = step.sees(source.takes) if source.domain == "take" else step.takes
             return [(take, source.name, take if source.domain == "take" else "") for take in takes]
-        return [(pair, source.name, pair) for pair in source.units]
+        return [(pair, source.name, pair) for pair in step.sees(source.units)]
 
     def _inputs(self, unit: Unit) -> Inputs:
         """(port, part, manifests by label), for every port of the signature; an unwired optional one has none."""

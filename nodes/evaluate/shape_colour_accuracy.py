@@ -196,7 +196,7 @@ def _agreement(
     exact[tuple(np.array(cells).T)] = solved
     start = time.perf_counter()
     refined = shape_colour_refined(
-        Dissimilarity(matrix), (takes[a], takes[b]), transitions=4, half_length=half,
+        Dissimilarity(matrix), (takes[a], takes[b]), transitions=8, half_length=half,
         colour_weight=_COLOUR_WEIGHT, turns=_TURNS,
     ).distance  # fmt: skip
     seconds = time.perf_counter() - start

@@ -20,7 +20,7 @@ def shape_colour_refined(
     similarity: Dissimilarity,
     histograms: Pair[ShapeColourHistograms],
     *,
-    transitions: Annotated[int, Param("1", 1, 100, "cheapest transitions that are to be told exactly")] = 4,
+    transitions: Annotated[int, Param("1", 1, 100, "cheapest transitions that are solved exactly")] = 8,
     half_length: Annotated[int, Param("frame", 1, 100, "of the window of a transition (L)")] = 4,
     apart: Annotated[int, Param("frame", 0, 1000, "within one take, the least |m - n|")] = 12,
     colour_weight: ColourWeight = 1.0,
@@ -29,10 +29,9 @@ def shape_colour_refined(
     """The matrix of similarity.shape_colour with exact distances along its cheapest transitions: (frame_a, frame_b).
 
     Transitions (local minima of the windowed cost W_L) are solved with all filled bins, until the cheapest, as many
-    as asked for, are all solved; meanwhile a distance that is not solved is taken as the matrix' times the least ratio
-    of exact distances to the matrix' that was seen, so that hardly any is overrated. In what comes out those
-    that are not solved are multiplied by the median ratio instead, so that both kinds can be compared.
-    colour_weight and turns must be those of the matrix.
+    as asked for, are all solved. All distances that are not are multiplied by the median ratio of exact distances to
+    the matrix', so that both kinds can be compared. Ask for more than are needed: a transition that the matrix
+    overrates by far may be missing at the end of them. colour_weight and turns must be those of the matrix.
 
     Raises ValueError where the matrix is not of these takes.
 
@@ -47,22 +46,20 @@ def shape_colour_refined(
         )
     same = equal_takes(a, b)
     bins = all_bins(a, b, colour_weight, turns)
-    exact, ratios = np.full(given.shape, np.nan), np.ones(1)
+    exact, refined = np.full(given.shape, np.nan), given
     along = np.arange(1 - half_length, half_length)
     while True:
-        known = np.where(np.isnan(exact), ratios.min() * given, exact)
         found = find_transitions(
-            known, transitions, half_length, half_length, apart=apart if same else 0, spread=half_length
+            refined, transitions, half_length, half_length, apart=apart if same else 0, spread=half_length
         )
         window = np.stack([found.m, found.n], axis=1)[:, None] + along[:, None]
         window = np.unique(window.reshape(-1, 2), axis=0)
         window = window[np.isnan(exact[tuple(window.T)])]
         if len(window) == 0:
-            break
+            return Dissimilarity(refined.astype(np.float32))
         exact[tuple(window.T)] = exact_distances(*bins, turns, window)
         if same:
             exact[tuple(window[:, ::-1].T)] = exact[tuple(window.T)]
         counted = ~np.isnan(exact) & (given > 0)
-        ratios = exact[counted] / given[counted] if counted.any() else ratios
-    refined = np.where(np.isnan(exact), np.median(ratios) * given, exact)
-    return Dissimilarity(refined.astype(np.float32))
+        scale = np.median(exact[counted] / given[counted]) if counted.any() else 1.0
+        refined = np.where(np.isnan(exact), scale * given, exact)

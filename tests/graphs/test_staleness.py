@@ -8,7 +8,7 @@ import reperform
 NODES = """
 from typing import Annotated, NamedTuple
 import numpy as np
-from reperform import Axes, Dataset, File, Pair, Param, node
+from reperform import Axes, Dataset, File, Pair, Pairs, Param, node
 
 
 class Numbers(NamedTuple):
@@ -71,6 +71,11 @@ def distance(numbers: Pair[Numbers]) -> One:
 @node(over="dataset")
 def total(numbers: Dataset[Numbers]) -> One:
     return One(sum(float(np.asarray(product.values).sum()) for product in numbers.values()))
+
+
+@node(over="dataset")
+def widest(distances: Pairs[One]) -> One:
+    return One(max(float(one.value) for one in distances.values()))
 
 
 @node(over="dataset", volatile=True)
@@ -151,6 +156,19 @@ def test_one_more_take(run):
 def test_one_take_changed(run):
     run(TAKES)
     assert run(TAKES.replace("seed: 5", "seed: 6"))[0] == {"n": 1, "d": 3, "t": 1}
+
+
+def test_the_takes_of_a_step_are_all_that_it_sees(run):
+    held = TAKES.replace(
+        "t: {node: demo.total, inputs: {numbers: n}}",
+        """t: {node: demo.total, inputs: {numbers: n}, takes: [x]}
+  w: {node: demo.widest, inputs: {distances: d}, takes: [x]}
+  a: {node: demo.widest, inputs: {distances: d}}""",
+    )
+    assert run(held)[0] == {"n": 2, "d": 4, "t": 1, "w": 1, "a": 1}
+    done, made = run(held.replace("seed: 5", "seed: 6"))
+    assert done == {"n": 1, "d": 3, "t": 0, "w": 0, "a": 1}
+    assert float(made["w"].value) == 0 != float(made["a"].value)
 
 
 VIEWS = """
