@@ -7,12 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from reperform.nodes.kernels.transition_tables import (
-    EdgeTables,
-    SpaceTables,
-    reference_weights,
-    variance,
-)  # fmt: skip
+from reperform.nodes.kernels.transition_tables import EdgeTables, SpaceTables, reference_weights
 
 # costs of shape are thousandths of the greatest dissimilarity, latencies are counted in frames of this rate
 SHAPE = 1000.0
@@ -135,45 +130,70 @@ def fill_trellis(
     poses = space.spread.shape[0]
     first = int(np.floor(pose + 0.5))
     out.size[0] = 0
+    before = 0
     for k in range(depth + 1):
         at = first + direction * int(np.round(k * step * poses))
         if not space.cyclic and (at < 0 or at > poses - 1):
             break
-        _lay_out(space, first, at, direction, control, k, step, out)
+        start = out.size[0]
+        _lay_out(space, control, k, step, before, out)
+        _time(space, first, at, direction, start, out)
+        before = start
 
 
 @njit(cache=True, nogil=True)
 def _lay_out(
-    space: SpaceTables,
-    first: int,
-    at: int,
-    direction: int,
-    control: np.ndarray,
-    changes: int,
-    step: float,
-    out: Trellis,
+    space: SpaceTables, control: np.ndarray, changes: int, step: float, before: int, out: Trellis
 ) -> None:
-    """All states at one moment: the control as it is, and each of its entries up to so many steps away."""
+    """Controls at one moment: as it is, and each of its entries up to so many steps away; those within fewer steps are
+    in the rows of the moment before, in the same order.
+    """
+    row = out.size[0]
     out.start[:] = control
-    _add(space, first, at, direction, out)
+    if changes == 0:
+        _locate(space, row, out)
+    else:
+        _repeat(before, row, out)
+    row, before = row + 1, before + 1
     for axis in range(len(control)):
         for side in range(2):
             sign = 2.0 * side - 1.0
             for j in range(1, changes + 1):
-                before = min(max(control[axis] + sign * (j - 1) * step, 0.0), 1.0)
+                nearer = min(max(control[axis] + sign * (j - 1) * step, 0.0), 1.0)
                 value = min(max(control[axis] + sign * j * step, 0.0), 1.0)
-                if abs(value - before) < _SAME:
+                if abs(value - nearer) < _SAME:
                     break
-                out.start[axis] = value
-                _add(space, first, at, direction, out)
+                if j < changes:
+                    _repeat(before, row, out)
+                    before += 1
+                else:
+                    out.start[axis] = value
+                    _locate(space, row, out)
+                row += 1
         out.start[axis] = control[axis]
+    out.size[0] = row
 
 
 @njit(cache=True, nogil=True)
-def _add(space: SpaceTables, first: int, at: int, direction: int, out: Trellis) -> None:
-    row, poses = out.size[0], space.spread.shape[0]
-    reference, weight = out.reference[row], out.weight[row]
-    reference_weights(space, out.start, out.corner, reference, weight)
+def _locate(space: SpaceTables, row: int, out: Trellis) -> None:
+    """The control `start` and the references between which it lies."""
+    out.control[row] = out.start
+    reference_weights(space, out.start, out.corner, out.reference[row], out.weight[row])
+
+
+@njit(cache=True, nogil=True)
+def _repeat(known: int, row: int, out: Trellis) -> None:
+    """The control of another row."""
+    for k in range(out.control.shape[1]):
+        out.control[row, k] = out.control[known, k]
+    for k in range(out.reference.shape[1]):
+        out.reference[row, k], out.weight[row, k] = out.reference[known, k], out.weight[known, k]
+
+
+@njit(cache=True, nogil=True)
+def _time(space: SpaceTables, first: int, at: int, direction: int, start: int, out: Trellis) -> None:
+    """Pose, seconds and variance of all states of one moment, from row `start` on."""
+    poses = space.spread.shape[0]
     # the clock covers two runs: shift both ends into them
     early, late = (first, at) if direction > 0 else (at, first)
     shift = -int(np.floor(early / poses)) * poses
@@ -181,27 +201,15 @@ def _add(space: SpaceTables, first: int, at: int, direction: int, out: Trellis) 
     while late > 2 * poses:
         late -= poses
         runs += 1
-    seconds = 0.0
-    for k in range(len(reference)):
-        clock = space.clock[reference[k]]
-        seconds += weight[k] * (clock[late] - clock[early] + runs * clock[poses])
     pose = at % poses
-    out.pose[row], out.seconds[row] = pose, seconds
-    out.control[row] = out.start
-    out.variance[row] = variance(space, pose, reference, weight)
-    out.size[0] = row + 1
-
-
-@njit(cache=True, nogil=True)
-def bound(distance: np.ndarray, source: Trellis, s: int, target: Trellis, t: int) -> float:
-    """Upper bound of a squared distance: sum_pq r_p r_q D_pq (004 eq 4.5 for the dissimilarity)."""
-    total, i, j = 0.0, source.pose[s], target.pose[t]
-    for p in range(source.reference.shape[1]):
-        row, part = source.reference[s, p], 0.0
-        for q in range(target.reference.shape[1]):
-            part += target.weight[t, q] * distance[i, row, j, target.reference[t, q]]
-        total += source.weight[s, p] * part
-    return total
+    for row in range(start, out.size[0]):
+        seconds = spread = 0.0
+        for k in range(out.reference.shape[1]):
+            p, weight = out.reference[row, k], out.weight[row, k]
+            seconds += weight * (space.clock[p, late] - space.clock[p, early] + runs * space.clock[p, poses])
+            for q in range(k):
+                spread += weight * out.weight[row, q] * space.spread[pose, p, out.reference[row, q]]
+        out.pose[row], out.seconds[row], out.variance[row] = pose, seconds, spread
 
 
 @njit(cache=True, nogil=True)
@@ -216,9 +224,20 @@ def dissimilarities(
     Source: 004 eq 4.5 (the bound). Departure: the identity |sum r_p x_p - y|^2 = sum r_p |x_p - y|^2 - var, which the
     proof of eq 4.5 (appendix A) drops, makes the bound exact for two numbers more per state.
     """
+    blended = np.empty(tables.distance.shape[3])
     for s in range(source.size[0]):
+        i, moment = source.pose[s], -1
         for t in range(target.size[0]):
-            value = bound(tables.distance, source, s, target, t)
+            j = target.pose[t]
+            if j != moment:
+                moment = j
+                for q in range(len(blended)):
+                    blended[q] = 0.0
+                    for p in range(source.reference.shape[1]):
+                        blended[q] += source.weight[s, p] * tables.distance[i, source.reference[s, p], j, q]
+            value = 0.0
+            for q in range(target.reference.shape[1]):
+                value += target.weight[t, q] * blended[target.reference[t, q]]
             if exact:
                 value = max(value - source.variance[s] - target.variance[t], 0.0)
             out[s, t] = value / tables.largest

@@ -49,23 +49,3 @@ def reference_weights(
     lattice_point(corner, space.halves, reference, weight)
     for k in range(len(reference)):
         reference[k] = space.lattice[cell, reference[k]]
-
-
-@njit(cache=True, nogil=True)
-def variance(space: SpaceTables, pose: int, reference: np.ndarray, weight: np.ndarray) -> float:
-    """Mean squared distance of references from their blend: sum_pq r_p r_q |x_p - x_q|^2 / 2."""
-    total = 0.0
-    for p in range(len(reference)):
-        for q in range(p):
-            total += weight[p] * weight[q] * space.spread[pose, reference[p], reference[q]]
-    return total
-
-
-@njit(cache=True, nogil=True)
-def stride(space: SpaceTables, pose: int, reference: np.ndarray, weight: np.ndarray) -> float:
-    """Squared distance of a blend of references from itself at the next pose: sum_pq r_p r_q s_p . s_q."""
-    total = 0.0
-    for p in range(len(reference)):
-        for q in range(len(reference)):
-            total += weight[p] * weight[q] * space.stride[pose, reference[p], reference[q]]
-    return total
