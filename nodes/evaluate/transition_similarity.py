@@ -10,8 +10,8 @@ import numpy as np
 
 from reperform.nodes.declaration import Param, node
 from reperform.nodes.kernels.reference_motions import References, reference_motions, squared_distances
-from reperform.nodes.kernels.transition_search import Trellis, dissimilarities, fill_trellis, new_trellis
 from reperform.nodes.kernels.transition_tables import EdgeTables
+from reperform.nodes.kernels.trellis import Trellis, dissimilarities, fill_trellis, new_trellis
 from reperform.nodes.motion_graph.edge_tables import edge_tables
 from reperform.nodes.motion_graph.exact_transitions import nonlinear_states
 from reperform.nodes.motion_graph.parametric import parametric

@@ -7,27 +7,12 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from reperform.nodes.kernels.transition_tables import EdgeTables, SpaceTables, reference_weights
+from reperform.nodes.kernels.transition_tables import EdgeTables, SpaceTables, clock_span, reference_weights
+from reperform.nodes.kernels.trellis import SAME
 
 # costs of shape are thousandths of the greatest dissimilarity, latencies are counted in frames of this rate
 SHAPE = 1000.0
 RATE = 25.0
-_SAME = 1e-9
-
-
-class Trellis(NamedTuple):
-    """States that can be reached (or from which a state can be reached), with the time it takes; the first `size[0]`."""
-
-    size: np.ndarray
-    pose: np.ndarray
-    control: np.ndarray
-    seconds: np.ndarray
-    reference: np.ndarray
-    weight: np.ndarray
-    variance: np.ndarray
-    # scratch
-    corner: np.ndarray
-    start: np.ndarray
 
 
 class Reach(NamedTuple):
@@ -77,17 +62,6 @@ class Found(NamedTuple):
     target: Reach
 
 
-def new_trellis(space: SpaceTables, depth: int, step: float = 0.1) -> Trellis:
-    """Room for a trellis of a depth at every pose."""
-    d, poses = space.control.shape[1], space.spread.shape[0]
-    moments = max(round(depth * step * poses), depth, poses) + 2
-    room = moments * (1 + d * (2 + int(1 / step)))
-    return Trellis(
-        np.zeros(1, np.int64), np.zeros(room, np.int64), np.zeros((room, d)), np.zeros(room),
-        np.zeros((room, d + 1), np.int64), np.zeros((room, d + 1)), np.zeros(room), np.zeros(d + 1), np.zeros(d),
-    )  # fmt: skip
-
-
 def new_found(tables: EdgeTables, depth: int = 20, step: float = 0.1) -> Found:
     """Room for a transition, found with trellises up to a depth."""
     source, target = (_new_reach(side, depth, step) for side in (tables.source, tables.target))
@@ -110,140 +84,6 @@ def _new_reach(space: SpaceTables, depth: int, step: float) -> Reach:
 
 
 @njit(cache=True, nogil=True)
-def fill_trellis(
-    space: SpaceTables,
-    pose: float,
-    control: np.ndarray,
-    direction: int,
-    depth: int,
-    step: float,
-    out: Trellis,
-) -> None:
-    """States within `depth` steps after (direction 1) or before (-1) a state.
-
-    After k steps: k step K poses on, and one control moved by up to k steps of its range, within 0 .. 1. Poses of a
-    space that is not cyclic end where the take ends.
-
-    Source: 004 section 4.4.1 (step 0.1).
-    Departure: controls move one at a time, so that states grow as k d and not as k^d.
-    """
-    poses = space.spread.shape[0]
-    first = int(np.floor(pose + 0.5))
-    out.size[0] = 0
-    before = 0
-    for k in range(depth + 1):
-        at = first + direction * int(np.round(k * step * poses))
-        if not space.cyclic and (at < 0 or at > poses - 1):
-            break
-        start = out.size[0]
-        _lay_out(space, control, k, step, before, out)
-        _time(space, first, at, direction, start, out)
-        before = start
-
-
-@njit(cache=True, nogil=True)
-def _lay_out(
-    space: SpaceTables, control: np.ndarray, changes: int, step: float, before: int, out: Trellis
-) -> None:
-    """Controls at one moment: as it is, and each of its entries up to so many steps away; those within fewer steps are
-    in the rows of the moment before, in the same order.
-    """
-    row = out.size[0]
-    out.start[:] = control
-    if changes == 0:
-        _locate(space, row, out)
-    else:
-        _repeat(before, row, out)
-    row, before = row + 1, before + 1
-    for axis in range(len(control)):
-        for side in range(2):
-            sign = 2.0 * side - 1.0
-            for j in range(1, changes + 1):
-                nearer = min(max(control[axis] + sign * (j - 1) * step, 0.0), 1.0)
-                value = min(max(control[axis] + sign * j * step, 0.0), 1.0)
-                if abs(value - nearer) < _SAME:
-                    break
-                if j < changes:
-                    _repeat(before, row, out)
-                    before += 1
-                else:
-                    out.start[axis] = value
-                    _locate(space, row, out)
-                row += 1
-        out.start[axis] = control[axis]
-    out.size[0] = row
-
-
-@njit(cache=True, nogil=True)
-def _locate(space: SpaceTables, row: int, out: Trellis) -> None:
-    """The control `start` and the references between which it lies."""
-    out.control[row] = out.start
-    reference_weights(space, out.start, out.corner, out.reference[row], out.weight[row])
-
-
-@njit(cache=True, nogil=True)
-def _repeat(known: int, row: int, out: Trellis) -> None:
-    """The control of another row."""
-    for k in range(out.control.shape[1]):
-        out.control[row, k] = out.control[known, k]
-    for k in range(out.reference.shape[1]):
-        out.reference[row, k], out.weight[row, k] = out.reference[known, k], out.weight[known, k]
-
-
-@njit(cache=True, nogil=True)
-def _time(space: SpaceTables, first: int, at: int, direction: int, start: int, out: Trellis) -> None:
-    """Pose, seconds and variance of all states of one moment, from row `start` on."""
-    poses = space.spread.shape[0]
-    # the clock covers two runs: shift both ends into them
-    early, late = (first, at) if direction > 0 else (at, first)
-    shift = -int(np.floor(early / poses)) * poses
-    early, late, runs = early + shift, late + shift, 0
-    while late > 2 * poses:
-        late -= poses
-        runs += 1
-    pose = at % poses
-    for row in range(start, out.size[0]):
-        seconds = spread = 0.0
-        for k in range(out.reference.shape[1]):
-            p, weight = out.reference[row, k], out.weight[row, k]
-            seconds += weight * (space.clock[p, late] - space.clock[p, early] + runs * space.clock[p, poses])
-            for q in range(k):
-                spread += weight * out.weight[row, q] * space.spread[pose, p, out.reference[row, q]]
-        out.pose[row], out.seconds[row], out.variance[row] = pose, seconds, spread
-
-
-@njit(cache=True, nogil=True)
-def dissimilarities(
-    tables: EdgeTables, source: Trellis, target: Trellis, exact: bool, out: np.ndarray
-) -> None:
-    """Dissimilarity of every source state from every target state: out (states, states), squared distance / largest.
-
-    exact: D = sum_pq r_p r_q D_pq - var_p - var_q, what the played mesh has (a blend of references) to rounding; else
-    the upper bound of it without the variances.
-
-    Source: 004 eq 4.5 (the bound). Departure: the identity |sum r_p x_p - y|^2 = sum r_p |x_p - y|^2 - var, which the
-    proof of eq 4.5 (appendix A) drops, makes the bound exact for two numbers more per state.
-    """
-    blended = np.empty(tables.distance.shape[3])
-    for s in range(source.size[0]):
-        i, moment = source.pose[s], -1
-        for t in range(target.size[0]):
-            j = target.pose[t]
-            if j != moment:
-                moment = j
-                for q in range(len(blended)):
-                    blended[q] = 0.0
-                    for p in range(source.reference.shape[1]):
-                        blended[q] += source.weight[s, p] * tables.distance[i, source.reference[s, p], j, q]
-            value = 0.0
-            for q in range(target.reference.shape[1]):
-                value += target.weight[t, q] * blended[target.reference[t, q]]
-            if exact:
-                value = max(value - source.variance[s] - target.variance[t], 0.0)
-            out[s, t] = value / tables.largest
-
-
-@njit(cache=True, nogil=True)
 def best_transition(
     tables: EdgeTables, source_pose: float, source_control: np.ndarray, target_pose: float, target_control: np.ndarray,
     depth: int, step: float, latency_weight: float, threshold: float, found: Found,
@@ -255,7 +95,7 @@ def best_transition(
     transition. Transitions above the threshold (dissimilarity) are refused. found: room from new_found; nothing is
     allocated.
 
-    Trellises reach `depth` steps, as in `fill_trellis`, but pass every moment: between two poses x, x' of the source and
+    Trellises reach `depth` steps, as in `trellis.fill_trellis`, but pass every moment: between two poses x, x' of the source and
     two y, y' of the target, a and b of the way on, the cost is a convex polynomial whose least value follows at once,
 
         |(1 - a) x + a x' - (1 - b) y - b y'|^2
@@ -289,8 +129,8 @@ def best_transition(
         if found.row[i] >= best:
             break
         j = _take_least(found.lower[i, :n], found.row, i)
-        changes = int(i / (step * length) + _SAME)
-        change = 0 if anywhere else int(j / (step * poses) + _SAME)
+        changes = int(i / (step * length) + SAME)
+        change = 0 if anywhere else int(j / (step * poses) + SAME)
         on = i + 1 < m
         back = (tables.target.cyclic or j > 0) if anywhere else j + 1 < n
         if source.laid[i] == 0:
@@ -381,7 +221,7 @@ def _widen(space: SpaceTables, control: np.ndarray, known: int, steps: int, step
                 if j > 0:
                     before = min(max(control[axis] + sign * (j - 1) * step, 0.0), 1.0)
                     value = min(max(control[axis] + sign * j * step, 0.0), 1.0)
-                    if abs(value - before) < _SAME:
+                    if abs(value - before) < SAME:
                         continue
                 elif axis + side > 0:
                     continue
@@ -407,13 +247,7 @@ def _lay_out_moment(
 ) -> None:  # fmt: skip
     """All states at one moment; without `on`, the next pose is the same; without `counted`, going on costs no time."""
     poses = space.spread.shape[0]
-    # the clock covers two runs: shift both ends into them
-    early, late = (first, at) if direction > 0 else (at, first)
-    shift = -int(np.floor(early / poses)) * poses
-    early, late, runs = early + shift, late + shift, 0
-    while late > 2 * poses:
-        late -= poses
-        runs += 1
+    early, late, runs = clock_span(first, at, direction, poses)
     pose = at % poses
     beside = (pose + direction) % poses if on else pose
     begin = pose if direction > 0 else beside

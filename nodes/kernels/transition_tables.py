@@ -49,3 +49,15 @@ def reference_weights(
     lattice_point(corner, space.halves, reference, weight)
     for k in range(len(reference)):
         reference[k] = space.lattice[cell, reference[k]]
+
+
+@njit(cache=True, nogil=True)
+def clock_span(first: int, at: int, direction: int, poses: int) -> tuple[int, int, int]:
+    """Where on a clock of two runs the way between two poses begins and ends, and how many runs it takes besides."""
+    early, late = (first, at) if direction > 0 else (at, first)
+    shift = -int(np.floor(early / poses)) * poses
+    early, late, runs = early + shift, late + shift, 0
+    while late > 2 * poses:
+        late -= poses
+        runs += 1
+    return early, late, runs

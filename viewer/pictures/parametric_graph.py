@@ -6,14 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from reperform.nodes.kernels.transition_search import (
-    Trellis,
-    best_transition,
-    fill_trellis,
-    new_found,
-    new_trellis,
-)
+from reperform.nodes.kernels.transition_search import best_transition, new_found
 from reperform.nodes.kernels.transition_tables import EdgeTables
+from reperform.nodes.kernels.trellis import Trellis, fill_trellis, new_trellis
 from reperform.nodes.motion_graph.edge_tables import edge_tables
 from reperform.nodes.products.parametric import ParametricGraph, SpaceSuggestion
 from reperform.viewer.palette import ACCENT, INK, PAPER, RULE, SOFT_INK

@@ -6,14 +6,9 @@ import pytest
 from reperform.nodes.kernels.fixed_transitions import fixed_transition
 from reperform.nodes.kernels.ground_plane import Placement, apply
 from reperform.nodes.kernels.reference_motions import reference_motions
-from reperform.nodes.kernels.transition_search import (
-    best_transition,
-    dissimilarities,
-    fill_trellis,
-    new_found,
-    new_trellis,
-)
+from reperform.nodes.kernels.transition_search import best_transition, new_found
 from reperform.nodes.kernels.transition_tables import EdgeTables, SpaceTables
+from reperform.nodes.kernels.trellis import dissimilarities, fill_trellis, new_trellis
 from reperform.nodes.motion_graph.edge_tables import edge_tables, find_edge
 from reperform.nodes.motion_graph.parametric import parametric
 from reperform.nodes.motion_graph.space import space
